@@ -1,0 +1,60 @@
+"""How epsilon and the step size change while an agent learns."""
+
+from typing import NamedTuple, Self
+
+from envs.checks import number
+
+
+class _Line(NamedTuple):
+    start: float
+    end: float
+
+
+class LinearDecay(_Line):
+    """From ``start`` to ``end`` in a straight line over the training (paper, section 4.3).
+
+    Args:
+        start: value in the first episode, in [0, 1].
+        end: value that is approached in the last, in [0, 1].
+
+    Raises:
+        TypeError, ValueError: when one of them is no probability.
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, start: float = 0.6, end: float = 0.01) -> Self:
+        return super().__new__(cls, number("start", start, 0, 1), number("end", end, 0, 1))
+
+    def at(self, progress: float) -> float:
+        """The value when the share ``progress`` of the episodes is done."""
+        return self.start + (self.end - self.start) * progress
+
+
+class _Harmonic(NamedTuple):
+    A: float
+    B: float
+    C: float
+
+
+class HarmonicRate(_Harmonic):
+    """Step size ``A / (B + C n)`` after n visits (paper, Eq. 15); ``C = 0`` is the constant A / B.
+
+    Args:
+        A: greater than 0.
+        B: at least A, so that no step is larger than 1.
+        C: at least 0.
+
+    Raises:
+        TypeError, ValueError: when one of them breaks its rule.
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, A: float = 1.0, B: float = 10.0, C: float = 0.01) -> Self:
+        a = number("A", A, 0, above=True)
+        return super().__new__(cls, a, number("B", B, a), number("C", C, 0))
+
+    def at(self, visits: int) -> float:
+        """The step size for the visit after ``visits`` earlier ones."""
+        return self.A / (self.B + self.C * visits)

@@ -1,0 +1,66 @@
+"""Checks of parameters: each failure is one sentence with the parameter, the rule and the value."""
+
+import math
+import numbers
+import operator
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any
+
+
+def number(
+    name: str, value: Any, low: float = -math.inf, high: float = math.inf, *, above: bool = False
+) -> float:
+    """``value`` as a finite float in [low, high], or (low, high] where ``above`` is set.
+
+    Raises:
+        TypeError: when it is no real number.
+        ValueError: when it is NaN, infinite or out of the range.
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(f"{name} must be a number, got {value!r}")
+    if not math.isfinite(value) or not low <= value <= high or (above and value == low):
+        raise ValueError(f"{name} must be {_range(low, high, above)}, got {value!r}")
+    return float(value)
+
+
+def integer(name: str, value: Any, low: int | None = None) -> int:
+    """``value`` as an int of at least ``low``.
+
+    Raises:
+        TypeError: when it is no integer.
+        ValueError: when it is less than ``low``.
+    """
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        found = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be an integer, got {value!r}") from None
+    if low is not None and found < low:
+        raise ValueError(f"{name} must be at least {low}, got {found}")
+    return found
+
+
+def choice(name: str, value: Any, options: Iterable[str]) -> str:
+    """``value`` if it is one of ``options``.
+
+    Raises:
+        ValueError: naming the options and, for a misspelt one, the nearest.
+    """
+    known = sorted(options)
+    if not isinstance(value, str) or value not in known:
+        near = get_close_matches(str(value), known, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        raise ValueError(f"{name} must be one of {', '.join(known) or 'nothing'}, got {value!r}{hint}")
+    return value
+
+
+def _range(low: float, high: float, above: bool) -> str:
+    if math.isfinite(low) and math.isfinite(high):
+        return f"in {'(' if above else '['}{low:g}, {high:g}]"
+    if math.isfinite(low):
+        return f"a finite number {'greater than' if above else 'of at least'} {low:g}"
+    if math.isfinite(high):
+        return f"a finite number of at most {high:g}"
+    return "a finite number"

@@ -1,0 +1,201 @@
+"""Mountain Car for PettingZoo: several independent cars, each alone on an identical hill.
+
+| | |
+|---|---|
+| Agents | ``car_0``, ``car_1``, ... or the names given |
+| Actions | ``Discrete(3)``: thrust left, none, right |
+| Observations | ``Box`` of float64: the exact position and velocity |
+| Rewards | -1 for every step |
+| Ending | each car on its own: terminated at the goal, truncated after ``max_steps``, never both |
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from gymnasium import spaces
+from gymnasium.utils import EzPickle
+from numpy.typing import NDArray
+from pettingzoo import AECEnv, ParallelEnv
+from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
+
+from envs.checks import integer, number
+from envs.hill import Hill, State
+from envs.streams import stream
+
+__all__ = ["env", "parallel_env", "raw_env"]
+
+Observation = NDArray[np.float64]
+
+
+def env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
+    """The turn-based (AEC) environment with PettingZoo's usual checks; arguments of ``parallel_env``."""
+    return AssertOutOfBoundsWrapper(raw_env(**arguments))
+
+
+def raw_env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
+    """The turn-based (AEC) environment; arguments of ``parallel_env``."""
+    return parallel_to_aec(parallel_env(**arguments))
+
+
+class parallel_env(ParallelEnv[str, Observation, int], EzPickle):
+    """Several cars that drive at the same time and do not touch each other.
+
+    Args:
+        cars: how many, or their names.
+        hill: the hill that each of them drives on.
+        max_steps: a car that has not reached the goal after so many steps is truncated.
+        same_start: whether all cars of an episode start at one position.
+        render_mode: None; the environment draws no pictures yet.
+        max_cycles: PettingZoo's usual name for ``max_steps``; overrides it.
+
+    Each car's starts come from a random stream of its own, which belongs to its name: a car's
+    trajectory does not depend on which others there are.
+
+    Raises:
+        TypeError, ValueError: when an argument breaks its rule.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {
+        "name": "mountain_car_v0",
+        "render_modes": [],
+        "is_parallelizable": True,
+    }
+
+    def __init__(
+        self,
+        cars: int | Iterable[str] = 2,
+        hill: Hill = Hill(),  # noqa: B008 (immutable)
+        max_steps: int = 200,
+        same_start: bool = False,
+        render_mode: str | None = None,
+        *,
+        max_cycles: int | None = None,
+    ) -> None:
+        EzPickle.__init__(self, cars, hill, max_steps, same_start, render_mode, max_cycles=max_cycles)
+        if render_mode is not None:
+            raise ValueError(f"render_mode must be None, got {render_mode!r}")
+        self.possible_agents = _names(cars)
+        self.agents: list[str] = []
+        self.hill = hill
+        self.max_steps = integer("max_steps", max_steps if max_cycles is None else max_cycles, 1)
+        self.same_start = same_start
+        self.render_mode = render_mode
+        low, high = np.array(hill.low), np.array(hill.high)
+        self.observation_spaces = {
+            car: spaces.Box(low, high, dtype=np.float64) for car in self.possible_agents
+        }
+        self.action_spaces = {car: spaces.Discrete(hill.n_actions) for car in self.possible_agents}
+        self._states: dict[str, State] = {}
+        self._streams: dict[str, np.random.Generator] = {}
+        self._steps = 0
+
+    def observation_space(self, agent: str) -> spaces.Space[Observation]:
+        """The box of the car's position and velocity."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> spaces.Space[Any]:
+        """0, 1, 2: thrust left, none, right."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Observation], dict[str, dict[str, Any]]]:
+        """Put all cars at a start.
+
+        Args:
+            seed: restarts the random streams; without it they go on (and begin unpredictably).
+            options: ``{"start": {car: (position, velocity)}}`` puts these cars where you say;
+                they draw nothing from their stream. Other options are ignored.
+        """
+        given = _starts(self.hill, (options or {}).get("start", {}), self.possible_agents)
+        if seed is not None or not self._streams:
+            self._reseed(seed)
+        self.agents = list(self.possible_agents)
+        self._steps = 0
+        if self.same_start:
+            together = self.hill.reset(self._streams[""])
+            self._states = {car: given.get(car, together) for car in self.agents}
+        else:
+            self._states = {
+                car: given[car] if car in given else self.hill.reset(self._streams[car])
+                for car in self.agents
+            }
+        return self._observe(), {car: {} for car in self.agents}
+
+    def step(
+        self, actions: Mapping[str, int]
+    ) -> tuple[
+        dict[str, Observation],
+        dict[str, float],
+        dict[str, bool],
+        dict[str, bool],
+        dict[str, dict[str, Any]],
+    ]:
+        """Drive every live car one step; the cars that end leave ``agents``.
+
+        Args:
+            actions: one for each live car.
+
+        Raises:
+            ValueError: when a live car has no action, or one that is not 0, 1 or 2.
+        """
+        cars = self.agents
+        chosen = [_action(actions, car, self.hill.n_actions) for car in cars]
+        self._steps += 1
+        rewards, terminations = {}, {}
+        for car, action in zip(cars, chosen, strict=True):
+            self._states[car], rewards[car], terminations[car] = self.hill.step(self._states[car], action)
+        late = self._steps >= self.max_steps
+        truncations = {car: late and not terminations[car] for car in cars}
+        observations = self._observe()
+        self.agents = [car for car in cars if not (late or terminations[car])]
+        return observations, rewards, terminations, truncations, {car: {} for car in cars}
+
+    def render(self) -> None:
+        """Draw nothing: there is no render mode yet."""
+
+    def close(self) -> None:
+        """Release nothing: the environment holds no resources."""
+
+    def _observe(self) -> dict[str, Observation]:
+        return {car: np.array(self.hill.observe(self._states[car])) for car in self.agents}
+
+    def _reseed(self, seed: int | None) -> None:
+        master = np.random.SeedSequence(None if seed is None else integer("seed", seed, 0))
+        self._streams = {car: stream(master, "start", car) for car in ["", *self.possible_agents]}
+
+
+def _names(cars: int | Iterable[str]) -> list[str]:
+    if isinstance(cars, str):
+        raise TypeError(f"cars must be a number or a list of names, got {cars!r}")
+    if not isinstance(cars, Iterable):
+        return [f"car_{number}" for number in range(integer("cars", cars, 1))]
+    names = list(cars)
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise ValueError(f"cars must be one or more names that are not empty, got {names!r}")
+    if len(set(names)) < len(names):
+        raise ValueError(f"cars must have names that differ, got {names!r}")
+    return names
+
+
+def _starts(hill: Hill, starts: Any, cars: list[str]) -> dict[str, State]:
+    if not isinstance(starts, Mapping) or not starts.keys() <= set(cars):
+        raise ValueError(f"start must give cars of {cars}, got {starts!r}")
+    checked = {}
+    for car, state in starts.items():
+        position, velocity = state
+        checked[car] = (
+            number(f"start position of {car}", position, hill.min_position, hill.goal_position),
+            number(f"start velocity of {car}", velocity, hill.min_velocity, hill.max_velocity),
+        )
+    return checked
+
+
+def _action(actions: Mapping[str, int], car: str, n_actions: int) -> int:
+    if car not in actions:
+        raise ValueError(f"actions must have one for each live car, got none for {car!r}")
+    action = integer(f"action of {car!r}", actions[car], 0)
+    if action >= n_actions:
+        raise ValueError(f"action of {car!r} must be less than {n_actions}, got {action}")
+    return action

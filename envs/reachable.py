@@ -1,0 +1,144 @@
+"""What a compiled loop can reach: the plain functions and classes behind it, and their fingerprint.
+
+Numba caches machine code on disk but notices only edits of the file that holds the loop itself, so an
+edited agent or hill would silently keep running its old code. The fingerprint covers all the code that
+is compiled in, whatever file, notebook cell or plugin it comes from.
+"""
+
+import enum
+import hashlib
+import inspect
+import types
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+# Code of these packages is fixed by their versions, or is a primitive of the compiler.
+_FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "collections", "enum", "operator"}
+_GENERATED = {"_asdict", "_replace", "_make", "_field_defaults", "_fields"}
+
+
+class Reached:
+    """The functions, named-tuple classes and constants that ``roots`` can reach.
+
+    Attributes:
+        functions: plain functions, in the order found.
+        methods: the plain methods of the named-tuple classes found.
+    """
+
+    def __init__(self, *roots: object) -> None:
+        self.functions: list[Callable[..., Any]] = []
+        self.methods: list[Callable[..., Any]] = []
+        self._seen: set[int] = set()
+        self._facts: set[str] = set()
+        for number, root in enumerate(roots):
+            self._facts.add(f"root {number}: {structure(root)}")
+            self._visit(root)
+
+    def fingerprint(self) -> str:
+        """A digest that changes with any code, constant or type that would be compiled in."""
+        return hashlib.sha256("\n".join(sorted(self._facts)).encode()).hexdigest()[:32]
+
+    def _visit(self, found: object) -> None:
+        if id(found) in self._seen:
+            return
+        self._seen.add(id(found))
+        if isinstance(found, type):
+            self._visit_class(found)
+        elif isinstance(found, types.FunctionType):
+            if not _foreign(found):
+                self.functions.append(found)
+                self._visit_code(found)
+        elif hasattr(found, "py_func"):  # compiled by its author with numba.njit
+            self._visit_code(found.py_func)
+        elif hasattr(found, "_fields"):
+            self._visit_class(type(found))
+            for value in found:  # type: ignore[attr-defined]
+                self._visit(value)
+
+    def _visit_class(self, cls: type) -> None:
+        if _foreign(cls):
+            return
+        if issubclass(cls, enum.Enum):
+            self._facts.add(f"{_name(cls)}: {[(m.name, m.value) for m in cls]!r}")
+        elif hasattr(cls, "_fields"):
+            for name in dir(cls):
+                method = inspect.getattr_static(cls, name)
+                if (
+                    isinstance(method, types.FunctionType)
+                    and name not in _GENERATED
+                    and not name.startswith("__")
+                ):
+                    self.methods.append(method)
+                    self._visit_code(method, owner=_name(cls))
+
+    def _visit_code(self, function: types.FunctionType, owner: str = "") -> None:
+        cells = [cell.cell_contents for cell in function.__closure__ or ()]
+        self._facts.add(
+            f"{owner} {_name(function)}: {_code(function.__code__)} {function.__defaults__!r} "
+            f"{[structure(c) + repr(c) for c in cells if _constant(c)]}"
+        )
+        for cell in cells:
+            self._visit(cell)
+        for found, name in _globals(function):
+            if _constant(found):
+                self._facts.add(f"{_name(function)}: {name} = {_literal(found)}")
+            else:
+                self._visit(found)
+
+
+def structure(value: object) -> str:
+    """The shape of a value as the compiler sees it: classes, array types, tuple lengths; no contents."""
+    if isinstance(value, np.ndarray):
+        return f"array({value.dtype},{value.ndim},{value.flags.c_contiguous},{value.flags.writeable})"
+    if isinstance(value, tuple):
+        return f"{_name(type(value))}({','.join(map(structure, value))})"
+    return _name(type(value))
+
+
+def _globals(function: types.FunctionType) -> Iterator[tuple[object, str]]:
+    """The global objects that the function's code names, also as attributes of modules."""
+    names = set(_names(function.__code__))
+    modules = [function.__globals__]
+    while modules:
+        namespace = modules.pop()
+        for name in sorted(names & namespace.keys()):
+            found = namespace[name]
+            if isinstance(found, types.ModuleType):
+                if found.__name__.partition(".")[0] not in _FOREIGN and id(vars(found)) != id(namespace):
+                    modules.append(vars(found))
+            else:
+                yield found, name
+
+
+def _names(code: types.CodeType) -> Iterator[str]:
+    yield from code.co_names
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from _names(constant)
+
+
+def _code(code: types.CodeType) -> str:
+    constants = [_code(c) if isinstance(c, types.CodeType) else _literal(c) for c in code.co_consts]
+    return f"{code.co_code.hex()} {constants} {code.co_names} {code.co_varnames} {code.co_freevars}"
+
+
+def _literal(value: object) -> str:
+    if isinstance(value, frozenset):
+        return repr(sorted(map(repr, value)))
+    if isinstance(value, np.ndarray):
+        return f"{structure(value)} {hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()}"
+    return repr(value)
+
+
+def _constant(value: object) -> bool:
+    return isinstance(value, (bool, int, float, complex, str, bytes, tuple, np.ndarray, np.generic))
+
+
+def _foreign(found: Any) -> bool:
+    return (getattr(found, "__module__", None) or "builtins").partition(".")[0] in _FOREIGN
+
+
+def _name(found: Any) -> str:
+    return f"{found.__module__}.{found.__qualname__}"

@@ -49,7 +49,8 @@ class Tabular(NamedTuple):
             step_size: alpha_n of Eq. (15).
             epsilon: share of random actions.
             initial_values: of the whole table, or (low, high) to draw each uniformly.
-            count_visits: what n of Eq. (15) counts: every ``"step"``, or one visit an ``"episode"``.
+            count_visits: what n of Eq. (15) counts: each ``"step"`` that takes the action in the
+                cell, one of them an ``"episode"``, or each visit of the ``"state"``'s cell.
             goal: ``"terminal"``: nothing follows it; ``"bootstrap"``: a cell like any other;
                 ``"zero"``: reaching it sets the value to 0.
             rng: draws the initial values.

@@ -1,7 +1,7 @@
 """The update of a table by temporal differences, Eq. (15), and the ways to read the paper's text of it."""
 
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +83,36 @@ class EpisodeUpdate(NamedTuple):
         visits[cell, action] += 1
 
 
-Update = StepUpdate | EpisodeUpdate
+class StateUpdate(NamedTuple):
+    """Eq. (15), with n the number of times that the cell was visited, whatever the action."""
+
+    step_size: HarmonicRate
+    discount: float
+    goal: GoalRule
+
+    def begin_episode(self) -> None:
+        """Nothing to do."""
+
+    def apply(
+        self,
+        values: Table,
+        visits: Counts,
+        cell: int,
+        action: int,
+        reward: float,
+        next_value: float,
+        terminated: bool,
+    ) -> None:
+        """Move ``values[cell, action]`` towards ``reward + discount * next_value``."""
+        earlier = 0
+        for other in range(visits.shape[1]):
+            earlier += visits[cell, other]
+        rate = self.step_size.at(earlier)
+        towards(values, cell, action, reward, next_value, terminated, rate, self.discount, self.goal)
+        visits[cell, action] += 1
+
+
+Update = StepUpdate | EpisodeUpdate | StateUpdate
 
 
 def towards(
@@ -116,11 +145,15 @@ def make_update(
         shape: of the table.
         step_size: schedule of the step size.
         discount: of the next value.
-        count_visits: ``"step"``: every visit counts; ``"episode"``: one an episode.
+        count_visits: ``"step"``: every time the action was taken in the cell; ``"episode"``: once
+            an episode; ``"state"``: every visit of the cell.
         goal: ``"terminal"``, ``"bootstrap"`` or ``"zero"``, see ``GoalRule``.
     """
     rule = GoalRule[choice("goal", goal, [rule.name.lower() for rule in GoalRule]).upper()]
-    if choice("count_visits", count_visits, ["step", "episode"]) == "step":
-        return StepUpdate(step_size, discount, rule)
-    arrays: list[Any] = [np.zeros(shape, np.int64), np.zeros(shape, np.int64), np.zeros(1, np.int64)]
-    return EpisodeUpdate(step_size, discount, rule, *arrays)
+    match choice("count_visits", count_visits, ["step", "episode", "state"]):
+        case "step":
+            return StepUpdate(step_size, discount, rule)
+        case "state":
+            return StateUpdate(step_size, discount, rule)
+    episodes, latest, now = (np.zeros(size, np.int64) for size in (shape, shape, 1))
+    return EpisodeUpdate(step_size, discount, rule, episodes, latest, now)

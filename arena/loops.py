@@ -30,6 +30,7 @@ def train(
     hill: Any,
     agent: Any,
     listener: Any,
+    n_actions: int,
     episodes: int,
     max_steps: int,
     starts: np.random.Generator,
@@ -42,24 +43,28 @@ def train(
         hill: the model of the car.
         agent: what drives and learns; changed in place.
         listener: what hears when an episode begins, see ``listener``.
+        n_actions: the actions are 0, 1, ..., n_actions - 1.
         episodes: number N_E of episodes.
         max_steps: limit N_LE of an episode.
         starts: the stream that starts come from.
         rng: the stream of the agent's choices.
         lengths: filled with the steps of each episode, shape (episodes,).
+
+    Raises:
+        ValueError: when the agent chooses an action that there is not.
     """
     for episode in range(episodes):
         progress = episode / episodes
         state = hill.reset(starts)
         observation = hill.observe(state)
         listener.begin_episode()
-        action = agent.act(observation, progress, rng)
+        action = checked(agent.act(observation, progress, rng), n_actions)
         steps = 0
         terminated = False
         while steps < max_steps and not terminated:
             state, reward, terminated = hill.step(state, action)
             next_observation = hill.observe(state)
-            next_action = agent.act(next_observation, progress, rng)
+            next_action = checked(agent.act(next_observation, progress, rng), n_actions)
             agent.learn(observation, action, reward, next_observation, next_action, terminated)
             observation = next_observation
             action = next_action
@@ -70,6 +75,7 @@ def train(
 def evaluate(
     hill: Any,
     agent: Any,
+    n_actions: int,
     starts: NDArray[np.float64],
     max_steps: int,
     lengths: Lengths,
@@ -80,18 +86,33 @@ def evaluate(
     Args:
         hill: the model of the car.
         agent: what drives; it does not learn.
+        n_actions: the actions are 0, 1, ..., n_actions - 1.
         starts: positions and velocities, shape (episodes, 2).
         max_steps: limit N_TS of an episode.
         lengths: filled with the steps of each episode, shape (episodes,).
         reached: filled with whether the goal was reached, shape (episodes,).
+
+    Raises:
+        ValueError: when the agent chooses an action that there is not.
     """
     for episode in range(starts.shape[0]):
         state = (starts[episode, 0], starts[episode, 1])
         steps = 0
         terminated = False
         while steps < max_steps and not terminated:
-            action = agent.greedy(hill.observe(state))
+            action = checked(agent.greedy(hill.observe(state)), n_actions)
             state, _, terminated = hill.step(state, action)
             steps += 1
         lengths[episode] = steps
         reached[episode] = terminated
+
+
+def checked(action: int, n_actions: int) -> int:
+    """``action`` if there is such a one; else an agent's table would be read beyond its end.
+
+    Raises:
+        ValueError: when there is not.
+    """
+    if action < 0 or action >= n_actions:
+        raise ValueError("action must be one of the hill's")
+    return action

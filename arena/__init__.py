@@ -1,0 +1,20 @@
+"""The arena: entrants learn on one hill, and their scores say who drives best."""
+
+from arena.builtin import paper, quick
+from arena.entrant import Entrant, sweep
+from arena.results import Results, load
+from arena.runner import run
+from arena.tournament import Evaluation, Tournament, Training
+
+__all__ = [
+    "Entrant",
+    "Evaluation",
+    "Results",
+    "Tournament",
+    "Training",
+    "load",
+    "paper",
+    "quick",
+    "run",
+    "sweep",
+]

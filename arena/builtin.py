@@ -1,0 +1,40 @@
+"""The tournaments that need no file: the paper's, and a quick one."""
+
+from collections.abc import Callable
+
+from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
+from arena.entrant import Entrant, sweep
+from arena.tournament import Evaluation, Tournament, Training
+
+PAPER_BINS = [(position, velocity) for position in (10, 20, 30, 40) for velocity in (10, 20, 30, 40)]
+
+
+def paper(replicates: int = 10, seed: int = 0, reading: str = "literal") -> Tournament:
+    """Tables 1 and 2 of the paper: two algorithms on 4 x 4 grids, with the paper's parameters."""
+    entrants = (
+        *sweep("q-learning", QLearning, over={"bins": PAPER_BINS}),
+        *sweep("sarsa", Sarsa, over={"bins": PAPER_BINS}),
+    )
+    return Tournament(entrants, replicates=replicates, seed=seed, name="paper", reading=reading)
+
+
+def quick(replicates: int = 3, seed: int = 0, reading: str = "literal") -> Tournament:
+    """Two that learn and two that do not, in seconds."""
+    entrants = (
+        Entrant("q-learning", QLearning, bins=(20, 20)),
+        Entrant("sarsa", Sarsa, bins=(20, 20)),
+        Entrant("momentum", MomentumAgent),
+        Entrant("random", RandomAgent),
+    )
+    return Tournament(
+        entrants,
+        training=Training(episodes=300, max_steps=1000),
+        evaluation=Evaluation(episodes=100),
+        replicates=replicates,
+        seed=seed,
+        name="quick",
+        reading=reading,
+    )
+
+
+BUILT_IN: dict[str, Callable[..., Tournament]] = {"paper": paper, "quick": quick}

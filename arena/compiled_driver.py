@@ -1,0 +1,99 @@
+"""The compiled driver: training and evaluation fused with the hill and the agent into machine code.
+
+To the bit the results of the PettingZoo driver.
+"""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from arena.loops import evaluate, listener, train
+from arena.outcome import Outcome, agent_arrays, pack, score
+from arena.tournament import Conditions, Run
+from envs.compilation import compile_loop
+from envs.reachable import Reached
+from envs.streams import stream
+
+NAME = "compiled"
+
+
+def race(conditions: Conditions, run: Run) -> Outcome:
+    """Train and evaluate one car.
+
+    Raises:
+        envs.compilation.CompilationError: when the agent cannot be compiled.
+        Exception: whatever the agent raises.
+    """
+    began = time.perf_counter()
+    agent = run.entrant.create(conditions.hill, stream(conditions.seed, "create", run.identity))
+    training, evaluation = _arguments(conditions, agent, run)
+    compile_loop(train, *training)(*training)
+    compile_loop(evaluate, *evaluation)(*evaluation)
+    lengths, (test_lengths, test_reached) = training[-1], evaluation[-2:]
+    accuracy, mean_length = score(test_lengths, test_reached)
+    arrays = {
+        **agent_arrays(agent),
+        "lengths": lengths,
+        "test_lengths": test_lengths,
+        "test_reached": test_reached,
+    }
+    return Outcome(
+        run.entrant.name,
+        run.replicate,
+        NAME,
+        "finished",
+        accuracy,
+        mean_length,
+        int(lengths.sum()),
+        time.perf_counter() - began,
+        pack(arrays),
+    )
+
+
+def prepare(conditions: Conditions, run: Run) -> None:
+    """Compile what ``race`` runs, or load it from the cache on disk.
+
+    Raises:
+        envs.compilation.CompilationError: when the agent cannot be compiled.
+    """
+    for loop, arguments in _loops(conditions, run):
+        compile_loop(loop, *arguments)
+
+
+def fingerprint(conditions: Conditions, run: Run) -> str:
+    """The same for two runs if the same machine code drives both."""
+    return " ".join(Reached(loop, *arguments).fingerprint() for loop, arguments in _loops(conditions, run))
+
+
+def _loops(conditions: Conditions, run: Run) -> list[tuple[Callable[..., Any], tuple[Any, ...]]]:
+    agent = run.entrant.create(conditions.hill, np.random.default_rng(0))
+    training, evaluation = _arguments(conditions, agent, run)
+    return [(train, training), (evaluate, evaluation)]
+
+
+def _arguments(
+    conditions: Conditions, agent: Any, run: Run
+) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """The arguments of the two loops; the arrays that they fill come last."""
+    hill, training, evaluation = conditions.hill, conditions.training, conditions.evaluation
+    return (
+        hill,
+        agent,
+        listener(agent),
+        hill.n_actions,
+        training.episodes,
+        training.max_steps,
+        stream(conditions.seed, "start", run.identity),
+        stream(conditions.seed, "act", run.identity),
+        np.zeros(training.episodes, np.int64),
+    ), (
+        hill,
+        agent,
+        hill.n_actions,
+        conditions.start_states(run.replicate),
+        evaluation.max_steps,
+        np.zeros(evaluation.episodes, np.int64),
+        np.zeros(evaluation.episodes, np.bool_),
+    )

@@ -1,0 +1,77 @@
+"""What a run leaves behind."""
+
+import io
+import math
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Arrays = dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Scores and arrays of one run, in values that any process can receive.
+
+    Attributes:
+        entrant, replicate: which run.
+        driver: ``compiled`` or ``pettingzoo``.
+        status: ``finished`` or ``failed``.
+        accuracy: percentage of the test episodes that reached the goal.
+        mean_length: mean steps of those that did; NaN if none did.
+        iterations: steps of learning.
+        seconds: that the run took.
+        arrays: of the agent and of its episodes, as the bytes of an ``.npz`` file.
+        error: what went wrong, with its traceback; empty if nothing did.
+    """
+
+    entrant: str
+    replicate: int
+    driver: str
+    status: str
+    accuracy: float = math.nan
+    mean_length: float = math.nan
+    iterations: int = 0
+    seconds: float = 0.0
+    arrays: bytes = b""
+    error: str = ""
+
+
+def score(lengths: NDArray[np.int64], reached: NDArray[np.bool_]) -> tuple[float, float]:
+    """The paper's accuracy in percent and mean length of the successful episodes (section 4.3)."""
+    successful = lengths[reached]
+    accuracy = 100.0 * len(successful) / len(lengths)
+    return accuracy, float(successful.mean()) if len(successful) else math.nan
+
+
+def agent_arrays(agent: Any) -> Arrays:
+    """The arrays that are fields or attributes of the agent, by name."""
+    fields = agent._asdict() if hasattr(agent, "_asdict") else getattr(agent, "__dict__", {})
+    return {
+        name: value
+        for name, value in fields.items()
+        if isinstance(value, np.ndarray) and not value.dtype.hasobject
+    }
+
+
+def pack(arrays: Mapping[str, NDArray[Any]]) -> bytes:
+    """The bytes of an ``.npz`` file; the same for the same arrays.
+
+    ``numpy.savez_compressed`` does this at zlib's level 6, three times slower and 5% smaller.
+    """
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                np.lib.format.write_array(file, array, allow_pickle=False)
+    return buffer.getvalue()
+
+
+def unpack(data: bytes) -> Arrays:
+    """The arrays of an ``.npz`` file; never runs code."""
+    with np.load(io.BytesIO(data), allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}

@@ -1,0 +1,129 @@
+"""Results of a tournament: scores as a table, arrays on demand."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from arena.outcome import Arrays
+from arena.store import Store
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SCORES = ("accuracy", "mean_length", "iterations", "seconds", "driver", "status")
+
+
+class Results:
+    """What a tournament found: ``results.frame()`` has one row a run.
+
+    Made by ``arena.run`` and ``arena.load``. Close it, or use it in a ``with`` statement, to close
+    its file.
+    """
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    @property
+    def path(self) -> Path | None:
+        """The results file; None for one that is gone with this object."""
+        return self._store.path
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """The tournament as plain values, see ``Tournament.to_dict``."""
+        return self._store.config
+
+    @property
+    def versions(self) -> dict[str, str]:
+        """Versions of Python and the packages that computed the results."""
+        return self._store.versions
+
+    @property
+    def runs(self) -> list[dict[str, Any]]:
+        """One dictionary a run, entrants in the tournament's order; plain values, NaN as None."""
+        entrants = {entrant["name"]: entrant for entrant in self.config["entrants"]}
+        order = {name: place for place, name in enumerate(entrants)}
+        return [
+            {
+                "entrant": row["entrant"],
+                "agent": entrants[row["entrant"]]["agent"],
+                "parameters": entrants[row["entrant"]]["parameters"],
+                "replicate": row["replicate"],
+                **{name: _none(row[name]) for name in SCORES},
+                **({"error": row["error"]} if row["error"] else {}),
+            }
+            for row in sorted(
+                self._store.rows(), key=lambda row: (order[row["entrant"]], row["replicate"])
+            )
+        ]
+
+    def frame(self) -> "pd.DataFrame":
+        """The runs as a table: entrant, agent, a column a parameter, replicate and the scores.
+
+        A parameter that an agent does not have is missing; lists are tuples, so that they group.
+        """
+        import pandas as pd
+
+        names = list(dict.fromkeys(n for e in self.config["entrants"] for n in e["parameters"]))
+        rows = [
+            {
+                "entrant": run["entrant"],
+                "agent": run["agent"],
+                **{name: _cell(run["parameters"].get(name)) for name in names},
+                "replicate": run["replicate"],
+                **{name: run[name] for name in SCORES},
+            }
+            for run in self.runs
+        ]
+        columns = ["entrant", "agent", *names, "replicate", *SCORES]
+        frame = pd.DataFrame(rows, columns=columns)
+        return frame.astype({"accuracy": float, "mean_length": float, "seconds": float})
+
+    def arrays(self, entrant: str, replicate: int = 0) -> Arrays:
+        """The arrays of a run: the agent's own, such as ``values`` and ``visits``, and
+
+        ``lengths`` (steps of each training episode), ``test_lengths`` and ``test_reached``.
+
+        Raises:
+            KeyError: when there is no such run.
+        """
+        return self._store.arrays(entrant, replicate)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything but the arrays, as plain values; what ``arena show --json`` prints."""
+        return {**self.config, "versions": self.versions, "runs": self.runs}
+
+    def close(self) -> None:
+        """Close the file."""
+        self._store.close()
+
+    def __enter__(self) -> "Results":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        config = self.config
+        total = config["replicates"] * len(config["entrants"])
+        return f"<Results of {config['name']!r}: {len(list(self._store.rows()))} of {total} runs>"
+
+
+def load(path: str | Path) -> Results:
+    """The results in the file ``path``, only to be read.
+
+    Raises:
+        arena.store.ResultsError: a ValueError; when there is no such file or it is something else.
+    """
+    return Results(Store.read(Path(path)))
+
+
+def _none(value: Any) -> Any:
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name}={part}" for name, part in value.items())
+    return tuple(map(_cell, value)) if isinstance(value, list) else value

@@ -1,0 +1,158 @@
+"""Run a tournament: fan its runs out over joblib's workers and keep what comes back."""
+
+import logging
+import math
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from arena import compiled_driver, pettingzoo_driver
+from arena.outcome import Outcome
+from arena.results import Results
+from arena.store import Store
+from arena.tournament import Conditions, Run, Tournament
+from envs.checks import choice, integer
+from envs.compilation import CompilationError
+
+DRIVERS = ("auto", "compiled", "pettingzoo")
+_CARS_TOGETHER = 16  # a group of cars is kept when all of it has finished
+_log = logging.getLogger("arena")
+
+Progress = Callable[[int, int], None]
+
+
+def run(
+    tournament: Tournament,
+    out: str | Path | None = None,
+    n_jobs: int = -1,
+    driver: str = "auto",
+    *,
+    progress: Progress | None = None,
+) -> Results:
+    """Run what is not finished of ``tournament``, over the cores.
+
+    The results are the same bits whatever the workers, the joblib backend (that of
+    ``joblib.parallel_config``), the driver and the other entrants.
+
+    Args:
+        tournament: what to race.
+        out: results file; one of the same tournament is continued. None: kept only for as long as
+            the returned object.
+        n_jobs: workers, as joblib counts them: -1 is one a core.
+        driver: ``"compiled"``, ``"pettingzoo"``, or ``"auto"``: compiled where the agent can be.
+        progress: called with the number of finished runs and of all, at the start and after each.
+
+    Raises:
+        TypeError, ValueError: when an argument breaks its rule, ``out`` is another tournament's
+            file or cannot be written, or an agent cannot be compiled that has to be.
+    """
+    if not isinstance(tournament, Tournament):
+        raise TypeError(f"tournament must be a Tournament, got {tournament!r}")
+    choice("driver", driver, DRIVERS)
+    if integer("n_jobs", n_jobs) == 0:
+        raise ValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
+    path = None if out is None else Path(out)
+    config = tournament.to_dict()
+    resuming = path is not None and path.exists()
+    store = Store.resume(path, config) if path is not None and resuming else None
+    done = store.finished() if store else set()
+    pending = [r for r in tournament.runs if (r.entrant.name, r.replicate) not in done]
+    try:
+        tasks = _plan(tournament.conditions, pending, n_jobs, driver)
+        store = store or Store.create(path, config)
+        report = progress or (lambda _finished, _total: None)
+        finished = len(tournament.runs) - len(pending)
+        report(finished, len(tournament.runs))
+        for outcomes in _parallel(n_jobs, _work, tasks):
+            for outcome in outcomes:
+                store.add(outcome)
+                finished += 1
+                report(finished, len(tournament.runs))
+    except BaseException:
+        if store:
+            store.close()
+        raise
+    return Results(store)
+
+
+Task = tuple[str, Conditions, list[Run]]
+
+
+def _plan(conditions: Conditions, runs: list[Run], n_jobs: int, driver: str) -> list[Task]:
+    """Who drives which runs: single compiled ones, and groups of cars in a PettingZoo environment."""
+    import joblib
+
+    interpreted = runs
+    tasks: list[Task] = []
+    if driver != "pettingzoo":
+        reasons = _compile(conditions, runs, n_jobs)
+        interpreted = [r for r in runs if r.entrant.name in reasons]
+        for agent, (name, reason) in {
+            r.entrant.agent: (r.entrant.name, reasons[r.entrant.name]) for r in interpreted
+        }.items():
+            if driver == "compiled":
+                raise ValueError(f"entrant {name!r} cannot be compiled: {reason}")
+            _log.warning("%s runs interpreted: %s", agent.__name__, reason)
+        tasks = [
+            (compiled_driver.NAME, conditions, [r]) for r in runs if r.entrant.name not in reasons
+        ]
+    groups = min(joblib.effective_n_jobs(n_jobs), len(interpreted))
+    groups = max(groups, math.ceil(len(interpreted) / _CARS_TOGETHER))
+    tasks += [(pettingzoo_driver.NAME, conditions, interpreted[g::groups]) for g in range(groups)]
+    return tasks
+
+
+def _compile(conditions: Conditions, runs: Iterable[Run], n_jobs: int) -> dict[str, str]:
+    """Compile once for each kind of agent, side by side, before the runs are fanned out.
+
+    Returns:
+        Why not, by entrant, for those that cannot be compiled.
+    """
+    kinds: dict[str, Run] = {}
+    kind_of: dict[str, str] = {}
+    reasons: dict[str, str] = {}
+    for one in {r.entrant.name: r for r in runs}.values():
+        if not hasattr(one.entrant.agent, "_fields"):
+            reasons[one.entrant.name] = "it is no NamedTuple"
+            continue
+        kind = compiled_driver.fingerprint(conditions, one)
+        kinds.setdefault(kind, one)
+        kind_of[one.entrant.name] = kind
+    tasks = [(kind, conditions, one) for kind, one in kinds.items()]
+    failed = dict(answer for answer in _parallel(n_jobs, _prepare, tasks) if answer[1])
+    return reasons | {name: failed[kind] for name, kind in kind_of.items() if kind in failed}
+
+
+def _parallel(n_jobs: int, function: Callable[..., Any], tasks: list[Any]) -> Iterator[Any]:
+    """The results as they come in, where joblib's backend can do that, else at the end."""
+    import joblib
+
+    if not tasks:
+        return
+    try:
+        parallel = joblib.Parallel(n_jobs=n_jobs, return_as="generator_unordered", max_nbytes=None)
+    except ValueError:
+        parallel = joblib.Parallel(n_jobs=n_jobs, max_nbytes=None)
+    yield from parallel(joblib.delayed(function)(*task) for task in tasks)
+
+
+def _prepare(kind: str, conditions: Conditions, one: Run) -> tuple[str, str]:
+    """In a worker: compile for ``one``; its kind, and why not if it failed."""
+    try:
+        compiled_driver.prepare(conditions, one)
+    except CompilationError as error:
+        return kind, str(error)
+    return kind, ""
+
+
+def _work(driver: str, conditions: Conditions, runs: list[Run]) -> list[Outcome]:
+    """In a worker: drive the runs; what fails is told, not raised."""
+    if driver == pettingzoo_driver.NAME:
+        return pettingzoo_driver.race(conditions, runs)
+    (only,) = runs
+    try:
+        return [compiled_driver.race(conditions, only)]
+    except Exception:
+        error = traceback.format_exc()
+        return [Outcome(only.entrant.name, only.replicate, driver, "failed", error=error)]

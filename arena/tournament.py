@@ -1,0 +1,167 @@
+"""What is raced: the frozen, validated description of a tournament."""
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arena.entrant import Entrant, plain
+from arena.readings import READINGS
+from envs import Hill
+from envs.checks import choice, integer
+from envs.streams import stream
+
+
+def _integers(owner: Any, prefix: str, **least: int) -> None:
+    for name, low in least.items():
+        label = f"{prefix} {name}".strip()
+        object.__setattr__(owner, name, integer(label, getattr(owner, name), low))
+
+
+@dataclass(frozen=True)
+class Training:
+    """How long the agents learn (paper, section 4.3).
+
+    Args:
+        episodes: N_E, at least 1.
+        max_steps: N_LE, limit of an episode, at least 1.
+    """
+
+    episodes: int = 4000
+    max_steps: int = 30000
+
+    def __post_init__(self) -> None:
+        _integers(self, "training", episodes=1, max_steps=1)
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """How long the learned policies are tested (paper, section 4.3).
+
+    Args:
+        episodes: N_TE, at least 1.
+        max_steps: N_TS, limit of an episode, at least 1.
+    """
+
+    episodes: int = 1000
+    max_steps: int = 500
+
+    def __post_init__(self) -> None:
+        _integers(self, "evaluation", episodes=1, max_steps=1)
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What all runs of a tournament have in common: all that a worker needs beside the entrant."""
+
+    hill: Hill
+    training: Training
+    evaluation: Evaluation
+    seed: int
+
+    def start_states(self, replicate: int) -> NDArray[np.float64]:
+        """Where the test episodes start, the same for all entrants; shape (episodes, 2)."""
+        rng = stream(self.seed, "evaluation", str(replicate))
+        return np.array([self.hill.reset(rng) for _ in range(self.evaluation.episodes)])
+
+
+@dataclass(frozen=True)
+class Run:
+    """One replicate of one entrant."""
+
+    entrant: Entrant
+    replicate: int
+
+    @property
+    def identity(self) -> str:
+        """What its car and its random streams are called."""
+        return f"{self.entrant.name}#{self.replicate}"
+
+
+@dataclass(frozen=True)
+class Tournament:
+    """Entrants that learn on one hill and are tested from the same starts.
+
+    Args:
+        entrants: with names that differ.
+        hill: what they all drive on.
+        training: how long they learn.
+        evaluation: how long they are tested.
+        replicates: independent repetitions of each entrant, at least 1.
+        seed: master of all random streams, at least 0.
+        name: what the tournament is called.
+        reading: how to read the paper's protocol where its text leaves it open; see
+            ``arena.readings``. A reading other than ``"literal"`` changes the hill and sets those
+            parameters of the entrants that were not given.
+
+    Raises:
+        TypeError, ValueError: when an argument breaks its rule, or an entrant cannot be made.
+    """
+
+    entrants: tuple[Entrant, ...]
+    hill: Hill = Hill()  # noqa: RUF009 (immutable)
+    training: Training = Training()
+    evaluation: Evaluation = Evaluation()
+    replicates: int = 10
+    seed: int = 0
+    name: str = "tournament"
+    reading: str = "literal"
+
+    def __post_init__(self) -> None:
+        reading = READINGS[choice("reading", self.reading, READINGS)]
+        for attribute, kind in (("hill", Hill), ("training", Training), ("evaluation", Evaluation)):
+            if not isinstance(getattr(self, attribute), kind):
+                raise TypeError(f"{attribute} must be a {kind.__name__}, got {getattr(self, attribute)!r}")
+        if not isinstance(self.name, str) or not self.name.strip() or not self.name.isprintable():
+            raise ValueError(f"name must be a printable text that is not empty, got {self.name!r}")
+        _integers(self, "", replicates=1, seed=0)
+        hill = self.hill._replace(**reading.hill)
+        object.__setattr__(self, "hill", hill)
+        entrants = tuple(map(reading.read, _entrants(self.entrants)))
+        object.__setattr__(self, "entrants", entrants)
+        for entrant in entrants:
+            try:
+                entrant.create(hill, np.random.default_rng(0))
+            except (TypeError, ValueError) as error:
+                kind = TypeError if isinstance(error, TypeError) else ValueError
+                raise kind(f"entrant {entrant.name!r}: {error}") from error
+
+    @cached_property
+    def conditions(self) -> Conditions:
+        """What all runs have in common."""
+        return Conditions(self.hill, self.training, self.evaluation, self.seed)
+
+    @cached_property
+    def runs(self) -> tuple[Run, ...]:
+        """All runs, replicate by replicate."""
+        return tuple(Run(e, r) for r in range(self.replicates) for e in self.entrants)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it as plain values; two tournaments are the same if these are equal."""
+        return {
+            "name": self.name,
+            "reading": self.reading,
+            "seed": self.seed,
+            "replicates": self.replicates,
+            "hill": plain(self.hill),
+            "training": asdict(self.training),
+            "evaluation": asdict(self.evaluation),
+            "entrants": [entrant.to_dict() for entrant in self.entrants],
+        }
+
+
+def _entrants(entrants: Iterable[Any]) -> tuple[Entrant, ...]:
+    found = tuple(entrants) if isinstance(entrants, Iterable) else (entrants,)
+    for entrant in found:
+        if not isinstance(entrant, Entrant):
+            raise TypeError(f"entrants must be Entrant objects, got {entrant!r}")
+    names = [entrant.name for entrant in found]
+    if not names:
+        raise ValueError("entrants must be one or more, got none")
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"entrants must have names that differ, got {twice!r} twice")
+    return found

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from fractions import Fraction
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -11,25 +12,29 @@ from agents.contract import Observation, Task
 from envs.checks import integer, number
 
 
-class _Edges(NamedTuple):
+class _Parts(NamedTuple):
     low: tuple[float, ...]
     high: tuple[float, ...]
     bins: tuple[int, ...]
-    width: tuple[float, ...]
     scale: tuple[float, ...]
+    edges: NDArray[np.float64]
 
 
-class Grid(_Edges):
-    """Cells ``[low + k width, low + (k + 1) width)`` in each of any number of dimensions.
+class Grid(_Parts):
+    """Cells ``[a + k h, a + (k + 1) h)`` with ``h = (b - a) / n`` in each of any number of dimensions.
 
-    ``encode`` is exact: a value on an edge, as the float ``low + k * width``, belongs to the cell
-    above it, and the float before it to the cell below. Values outside belong to the outermost
-    cells, ``high`` to the last.
+    ``encode`` is exact: the same as Eq. (18) in exact arithmetic for every float, so that a car at
+    rest is in the cell whose lower edge is 0, where there is one. Values outside belong to the
+    outermost cells, ``high`` to the last.
 
     Args:
-        low: least value of each dimension.
-        high: greatest value of each dimension.
-        bins: number of cells along each dimension, or one number for all.
+        low: least value a of each dimension.
+        high: greatest value b of each dimension.
+        bins: number n of cells along each dimension, or one number for all.
+
+    Attributes:
+        edges: float64, shape (dimensions, max(bins) + 1): ``edges[d, k]`` is the least float in cell
+            k; NaN beyond the last cell's.
 
     Raises:
         TypeError, ValueError: when a bound or a number of bins breaks its rule, or the bins are too
@@ -46,12 +51,23 @@ class Grid(_Edges):
         counts = _counts(bins, len(lows))
         for a, b in zip(lows, highs, strict=True):
             number("high", b, a, above=True)
-        widths = tuple((b - a) / n for a, b, n in zip(lows, highs, counts, strict=True))
-        scales = tuple(map(_scale, lows, widths, counts))
-        return super().__new__(cls, lows, highs, counts, widths, scales)
+        edges = np.full((len(counts), max(counts) + 1), np.nan)
+        for d, (a, b, n) in enumerate(zip(lows, highs, counts, strict=True)):
+            edges[d, :n] = _edges(a, b, n)
+        edges.flags.writeable = False
+        scales = tuple(
+            _scale(a, b, n, row) for a, b, n, row in zip(lows, highs, counts, edges, strict=True)
+        )
+        return super().__new__(cls, lows, highs, counts, scales, edges)
 
     def __getnewargs__(self) -> tuple[Any, ...]:
         return self.low, self.high, self.bins
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Grid) and self.__getnewargs__() == other.__getnewargs__()
+
+    def __hash__(self) -> int:
+        return hash(self.__getnewargs__())
 
     @classmethod
     def over(cls, task: Task, bins: int | Iterable[int]) -> Self:
@@ -68,19 +84,14 @@ class Grid(_Edges):
         cell = 0
         for d in range(len(self.bins)):
             last = self.bins[d] - 1
-            # ``scale`` is a hair less than 1 / width: k may be one too low, never too high.
+            # ``scale`` is a hair less than 1 / h: k may be one too low, never too high.
             offset = (observation[d] - self.low[d]) * self.scale[d]
             offset = offset if offset > 0.0 else 0.0
             k = int(offset) if offset < last else last
-            if k < last and observation[d] >= self.low[d] + (k + 1) * self.width[d]:
+            if observation[d] >= self.edges[d, k + 1]:
                 k += 1
             cell = cell * self.bins[d] + k
         return cell
-
-    def edges(self, dimension: int) -> NDArray[np.float64]:
-        """The ``bins + 1`` edges along ``dimension``."""
-        steps = np.arange(self.bins[dimension] + 1)
-        return self.low[dimension] + steps * self.width[dimension]
 
 
 def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:
@@ -91,16 +102,27 @@ def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:
     return counts
 
 
-def _scale(low: float, width: float, bins: int) -> float:
-    """The largest tried factor that makes ``encode`` exact at every edge, hence everywhere.
+def _edges(low: float, high: float, bins: int) -> NDArray[np.float64]:
+    """The least float in each cell: the exact edge, rounded up."""
+    a, h = Fraction(low), (Fraction(high) - Fraction(low)) / bins
+    edges = np.empty(bins)
+    for k in range(bins):
+        edge = float(a + k * h)
+        edges[k] = edge if edge >= a + k * h else math.nextafter(edge, math.inf)
+    if not np.all(np.diff(edges) > 0.0):
+        raise ValueError(f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]")
+    return edges
+
+
+def _scale(low: float, high: float, bins: int, edges: NDArray[np.float64]) -> float:
+    """The largest tried factor with which ``encode`` is exact at every edge, hence everywhere.
 
     ``encode`` grows with the value, so it is exact if it is on both sides of each edge.
     """
     k = np.arange(1, bins)
-    edges = low + k * width
-    below = np.nextafter(edges, -np.inf)
+    above, below = edges[1:bins], np.nextafter(edges[1:bins], -np.inf)
     for bits in range(52, 20, -1):
-        scale = (1.0 - 2.0**-bits) / width
-        if np.all((below - low) * scale < k) and np.all((edges - low) * scale >= k - 1):
+        scale = (1.0 - 2.0**-bits) * bins / (high - low)
+        if np.all((below - low) * scale < k) and np.all((above - low) * scale >= k - 1):
             return float(scale)
-    raise ValueError(f"bins must leave cells that floats can tell apart, got {bins} of width {width!r}")
+    raise ValueError(f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]")

@@ -7,8 +7,8 @@ is compiled in, whatever file, notebook cell or plugin it comes from.
 
 import enum
 import hashlib
-import inspect
 import types
+import typing
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,7 +16,8 @@ import numpy as np
 
 # Code of these packages is fixed by their versions, or is a primitive of the compiler.
 _FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "collections", "enum", "operator"}
-_GENERATED = {"_asdict", "_replace", "_make", "_field_defaults", "_fields"}
+# Methods that a named tuple has anyway; classmethods and properties are not compiled.
+_GENERATED = {*vars(typing.NamedTuple("_", [])), "__new__", "__getnewargs__"}
 
 
 class Reached:
@@ -63,13 +64,9 @@ class Reached:
         if issubclass(cls, enum.Enum):
             self._facts.add(f"{_name(cls)}: {[(m.name, m.value) for m in cls]!r}")
         elif hasattr(cls, "_fields"):
-            for name in dir(cls):
-                method = inspect.getattr_static(cls, name)
-                if (
-                    isinstance(method, types.FunctionType)
-                    and name not in _GENERATED
-                    and not name.startswith("__")
-                ):
+            attributes = {name: v for base in reversed(cls.__mro__) for name, v in vars(base).items()}
+            for name, method in attributes.items():
+                if isinstance(method, types.FunctionType) and name not in _GENERATED:
                     self.methods.append(method)
                     self._visit_code(method, owner=_name(cls))
 

@@ -1,0 +1,154 @@
+"""The command ``arena``. Progress and errors go to stderr, results to stdout."""
+
+import json
+import sys
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from arena.builtin import BUILT_IN
+from arena.configuration import load_tournament
+from arena.results import Results, load
+from arena.runner import run as run_tournament
+from arena.tournament import Tournament
+
+app = typer.Typer(
+    help="Race agents up the Mountain Car's hill: they learn, and the arena scores them.",
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+BAD_INPUT = 2
+SOME_FAILED = 1
+INTERRUPTED = 130
+
+
+class Driver(StrEnum):
+    """Choices of ``--driver``."""
+
+    AUTO = "auto"
+    COMPILED = "compiled"
+    PETTINGZOO = "pettingzoo"
+
+
+@app.command()
+def run(
+    tournament: Annotated[
+        str, typer.Argument(help="paper, quick, or a TOML file.", metavar="paper|quick|FILE.toml")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="Results file; by default runs/NAME.sqlite. One of the same "
+                                  "tournament is continued.", metavar="FILE")
+    ] = None,
+    jobs: Annotated[int, typer.Option(help="Workers; -1 is one a core.", metavar="N")] = -1,
+    replicates: Annotated[
+        int | None, typer.Option(help="Repetitions of each entrant.", metavar="R")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Master seed.", metavar="S")] = None,
+    reading: Annotated[
+        str | None, typer.Option(help="How to read the paper's protocol; see docs/readings.md.",
+                                 metavar="NAME")
+    ] = None,
+    driver: Annotated[Driver, typer.Option(help="What steps the cars.")] = Driver.AUTO,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Run a tournament, keep its results and print its tables."""
+    if jobs == 0:
+        raise ValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
+    given = {"replicates": replicates, "seed": seed, "reading": reading}
+    chosen = _tournament(tournament, {key: value for key, value in given.items() if value is not None})
+    out = out or Path("runs") / f"{chosen.name}.sqlite"
+    try:
+        results = _run(chosen, out, jobs, driver.value)
+    except KeyboardInterrupt:
+        _say(f"interrupted; what was finished is in {out}; the same command continues")
+        raise typer.Exit(INTERRUPTED) from None
+    with results:
+        _show(results, as_json=as_json)
+        if any(one["status"] != "finished" for one in results.runs):
+            raise typer.Exit(SOME_FAILED)
+
+
+@app.command()
+def show(
+    file: Annotated[Path, typer.Argument(help="Results file.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Print the tables of a results file."""
+    with load(file) as results:
+        _show(results, as_json=as_json)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code is 0, 1 (an entrant failed), 2 (bad input) or 130."""
+    command = typer.main.get_command(app)
+    try:
+        code = command.main(
+            args=None if arguments is None else list(arguments), prog_name="arena", standalone_mode=False
+        )
+    except typer.Exit as stop:
+        return stop.exit_code
+    except (typer.Abort, KeyboardInterrupt):
+        return INTERRUPTED
+    except BrokenPipeError:  # the reader, such as head, has seen enough
+        sys.stderr.close()
+        return 0
+    except Exception as error:
+        if hasattr(error, "format_message"):  # a mistake in the command line itself
+            _say(" ".join(error.format_message().split()))
+        elif isinstance(error, (ValueError, TypeError, OSError)):
+            _say(" ".join(str(error).split()))
+        else:
+            raise
+        return BAD_INPUT
+    return code if isinstance(code, int) else 0
+
+
+def _tournament(name: str, changes: dict[str, Any]) -> Tournament:
+    if name in BUILT_IN:
+        return BUILT_IN[name](**changes)
+    if not name.endswith(".toml"):
+        known = ", ".join(BUILT_IN)
+        raise ValueError(f"tournament must be one of {known}, or a file that ends in .toml, got {name!r}")
+    return load_tournament(name, **changes)
+
+
+def _run(tournament: Tournament, out: Path, jobs: int, driver: str) -> Results:
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task(tournament.name, total=None)
+        return run_tournament(
+            tournament,
+            out,
+            jobs,
+            driver,
+            progress=lambda finished, total: bar.update(task, completed=finished, total=total),
+        )
+
+
+def _show(results: Results, *, as_json: bool) -> None:
+    from arena.paper import compare
+    from arena.tables import render
+
+    if as_json:
+        comparison = compare(results)
+        extra = {"paper": comparison.to_dict()} if comparison else {}
+        print(json.dumps({**results.to_dict(), **extra}, allow_nan=False))
+    else:
+        Console(highlight=False, soft_wrap=True).print(render(results))
+
+
+def _say(sentence: str) -> None:
+    print(f"arena: {sentence}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,94 @@
+"""A tournament as a TOML file."""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from agents import agent_class
+from arena.entrant import Entrant, sweep
+from arena.tournament import Evaluation, Tournament, Training
+from envs import Hill
+from envs.checks import choice
+
+_KEYS = ("name", "reading", "seed", "replicates", "hill", "training", "evaluation", "entrants")
+_ENTRANT_KEYS = ("name", "agent", "parameters", "sweep")
+
+
+def load_tournament(path: str | Path, **changes: Any) -> Tournament:
+    """The tournament that the TOML file ``path`` describes.
+
+    Its tables are the arguments of ``Tournament``, ``Hill``, ``Training`` and ``Evaluation``; each
+    ``[[entrants]]`` has an ``agent`` and may have a ``name``, ``parameters`` and a ``sweep``.
+
+    Args:
+        path: of the file; its stem is the tournament's name if the file gives none.
+        changes: arguments of ``Tournament`` that override the file's.
+
+    Raises:
+        TypeError, ValueError: when the file cannot be read or breaks a rule; the message names it.
+    """
+    path = Path(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ValueError(f"there is no tournament file {path}") from None
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ValueError(f"{path} is not a TOML file: {error}") from error
+    try:
+        return from_dict({"name": path.stem, **content, **changes})
+    except TypeError as error:
+        raise TypeError(f"{path}: {error}") from error
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def from_dict(content: Mapping[str, Any]) -> Tournament:
+    """The tournament described by plain values, as ``Tournament.to_dict`` tells them.
+
+    Raises:
+        TypeError, ValueError: when something breaks its rule.
+    """
+    for key in content:
+        choice("key of the tournament", key, _KEYS)
+    arguments = dict(content)
+    kinds: dict[str, type[Any]] = {"hill": Hill, "training": Training, "evaluation": Evaluation}
+    for key, kind in kinds.items():
+        if key in arguments:
+            arguments[key] = _build(key, kind, arguments[key])
+    tables = arguments.pop("entrants", [])
+    if not isinstance(tables, list):
+        raise TypeError(f"entrants must be a list of tables, got {tables!r}")
+    return Tournament(tuple(one for table in tables for one in _entrants(table)), **arguments)
+
+
+def _build(name: str, kind: type[Any], table: Any) -> Any:
+    if not isinstance(table, Mapping):
+        raise TypeError(f"{name} must be a table, got {table!r}")
+    fields = getattr(kind, "_fields", None) or tuple(kind.__dataclass_fields__)
+    for key in table:
+        choice(f"key of {name}", key, fields)
+    return kind(**table)
+
+
+def _entrants(table: Any) -> Iterator[Entrant]:
+    if not isinstance(table, Mapping):
+        raise TypeError(f"each of entrants must be a table, got {table!r}")
+    for key in table:
+        choice("key of an entrant", key, _ENTRANT_KEYS)
+    if "agent" not in table:
+        raise ValueError("each of entrants must have an agent")
+    agent = agent_class(table["agent"])
+    name = table.get("name", table["agent"])
+    parameters, over = table.get("parameters", {}), table.get("sweep", {})
+    for key, value in (("parameters", parameters), ("sweep", over)):
+        if not isinstance(value, Mapping):
+            raise TypeError(f"{key} of entrant {name!r} must be a table, got {value!r}")
+    try:
+        yield from sweep(name, agent, over, **parameters) if over else [Entrant(name, agent, **parameters)]
+    except TypeError as error:
+        raise TypeError(f"entrant {name!r}: {error}") from error
+    except ValueError as error:
+        raise ValueError(f"entrant {name!r}: {error}") from error

@@ -43,7 +43,7 @@ class Grid(_Parts):
 
     __slots__ = ()
 
-    def __new__(cls, low: Iterable[float], high: Iterable[float], bins: int | Iterable[int]) -> Self:
+    def __new__(cls, low: Iterable[float], high: Iterable[float], bins: int | Iterable[int]) -> Self:  # noqa: D102 (described by the class)
         lows = tuple(number("low", x) for x in low)
         highs = tuple(number("high", x) for x in high)
         if len(lows) != len(highs) or not lows:
@@ -55,9 +55,7 @@ class Grid(_Parts):
         for d, (a, b, n) in enumerate(zip(lows, highs, counts, strict=True)):
             edges[d, :n] = _edges(a, b, n)
         edges.flags.writeable = False
-        scales = tuple(
-            _scale(a, b, n, row) for a, b, n, row in zip(lows, highs, counts, edges, strict=True)
-        )
+        scales = tuple(_scale(a, b, n, row) for a, b, n, row in zip(lows, highs, counts, edges, strict=True))
         return super().__new__(cls, lows, highs, counts, scales, edges)
 
     def __getnewargs__(self) -> tuple[Any, ...]:
@@ -86,7 +84,7 @@ class Grid(_Parts):
             last = self.bins[d] - 1
             # ``scale`` is a hair less than 1 / h: k may be one too low, never too high.
             offset = (observation[d] - self.low[d]) * self.scale[d]
-            offset = offset if offset > 0.0 else 0.0
+            offset = offset if offset > 0.0 else 0.0  # noqa: FURB136 (max would keep NaN)
             k = int(offset) if offset < last else last
             if observation[d] >= self.edges[d, k + 1]:
                 k += 1
@@ -95,7 +93,7 @@ class Grid(_Parts):
 
 
 def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:
-    given = bins if isinstance(bins, Iterable) and not isinstance(bins, str) else [bins] * dimensions
+    given = list(bins) if isinstance(bins, Iterable) else [bins] * dimensions
     counts = tuple(integer("bins", n, 1) for n in given)
     if len(counts) != dimensions:
         raise ValueError(f"bins must have {dimensions} numbers, one a dimension, got {counts}")

@@ -23,7 +23,7 @@ class LinearDecay(_Line):
 
     __slots__ = ()
 
-    def __new__(cls, start: float = 0.6, end: float = 0.01) -> Self:
+    def __new__(cls, start: float = 0.6, end: float = 0.01) -> Self:  # noqa: D102 (described by the class)
         return super().__new__(cls, number("start", start, 0, 1), number("end", end, 0, 1))
 
     def at(self, progress: float) -> float:
@@ -51,7 +51,7 @@ class HarmonicRate(_Harmonic):
 
     __slots__ = ()
 
-    def __new__(cls, A: float = 1.0, B: float = 10.0, C: float = 0.01) -> Self:
+    def __new__(cls, A: float = 1.0, B: float = 10.0, C: float = 0.01) -> Self:  # noqa: D102 (described by the class)
         a = number("A", A, 0, above=True)
         return super().__new__(cls, a, number("B", B, a), number("C", C, 0))
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
+from agents import HarmonicRate, MomentumAgent, QLearning, RandomAgent, Sarsa
 from arena.entrant import Entrant, sweep
 from arena.tournament import Evaluation, Tournament, Training
 
@@ -19,16 +19,17 @@ def paper(replicates: int = 10, seed: int = 0, reading: str = "literal") -> Tour
 
 
 def quick(replicates: int = 3, seed: int = 0, reading: str = "literal") -> Tournament:
-    """Two that learn and two that do not, in seconds."""
+    """Two that learn and two that do not, in seconds; a larger step size makes up for few episodes."""
+    rate = HarmonicRate(A=1.0, B=5.0, C=0.0)
     entrants = (
-        Entrant("q-learning", QLearning, bins=(20, 20)),
-        Entrant("sarsa", Sarsa, bins=(20, 20)),
+        Entrant("q-learning", QLearning, bins=(20, 20), step_size=rate),
+        Entrant("sarsa", Sarsa, bins=(20, 20), step_size=rate),
         Entrant("momentum", MomentumAgent),
         Entrant("random", RandomAgent),
     )
     return Tournament(
         entrants,
-        training=Training(episodes=300, max_steps=1000),
+        training=Training(episodes=500, max_steps=1000),
         evaluation=Evaluation(episodes=100),
         replicates=replicates,
         seed=seed,

@@ -43,17 +43,18 @@ def run(
         str, typer.Argument(help="paper, quick, or a TOML file.", metavar="paper|quick|FILE.toml")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="Results file; by default runs/NAME.sqlite. One of the same "
-                                  "tournament is continued.", metavar="FILE")
+        Path | None,
+        typer.Option(
+            help="Results file; by default runs/NAME.sqlite. One of the same tournament is continued.",
+            metavar="FILE",
+        ),
     ] = None,
     jobs: Annotated[int, typer.Option(help="Workers; -1 is one a core.", metavar="N")] = -1,
-    replicates: Annotated[
-        int | None, typer.Option(help="Repetitions of each entrant.", metavar="R")
-    ] = None,
+    replicates: Annotated[int | None, typer.Option(help="Repetitions of each entrant.", metavar="R")] = None,
     seed: Annotated[int | None, typer.Option(help="Master seed.", metavar="S")] = None,
     reading: Annotated[
-        str | None, typer.Option(help="How to read the paper's protocol; see docs/readings.md.",
-                                 metavar="NAME")
+        str | None,
+        typer.Option(help="How to read the paper's protocol; see docs/readings.md.", metavar="NAME"),
     ] = None,
     driver: Annotated[Driver, typer.Option(help="What steps the cars.")] = Driver.AUTO,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -150,5 +151,6 @@ def _say(sentence: str) -> None:
     print(f"arena: {sentence}", file=sys.stderr)
 
 
-if __name__ == "__main__":
+def entry() -> None:
+    """The console command."""
     sys.exit(main())

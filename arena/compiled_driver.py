@@ -73,9 +73,7 @@ def _loops(conditions: Conditions, run: Run) -> list[tuple[Callable[..., Any], t
     return [(train, training), (evaluate, evaluation)]
 
 
-def _arguments(
-    conditions: Conditions, agent: Any, run: Run
-) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+def _arguments(conditions: Conditions, agent: Any, run: Run) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """The arguments of the two loops; the arrays that they fill come last."""
     hill, training, evaluation = conditions.hill, conditions.training, conditions.evaluation
     return (

@@ -42,7 +42,9 @@ class Entrant:
             raise TypeError(f"agent must be a class, got {agent!r}")
         for method in _METHODS:
             if not callable(getattr(agent, method, None)):
-                raise TypeError(f"agent must have the methods {', '.join(_METHODS)}; {agent!r} lacks {method}")
+                raise TypeError(
+                    f"agent must have the methods {', '.join(_METHODS)}; {agent!r} lacks {method}"
+                )
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "agent", agent)
         object.__setattr__(self, "parameters", _complete(agent, parameters))
@@ -122,8 +124,7 @@ def _complete(agent: type[Any], given: Mapping[str, Any]) -> dict[str, Any]:
     declared = {
         name: parameter
         for name, parameter in signature.parameters.items()
-        if name != "rng"
-        and (parameter.kind is parameter.KEYWORD_ONLY or not hasattr(agent, "create"))
+        if name != "rng" and (parameter.kind is parameter.KEYWORD_ONLY or not hasattr(agent, "create"))
     }
     free = any(parameter.kind is parameter.VAR_KEYWORD for parameter in declared.values())
     declared = {

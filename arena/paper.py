@@ -53,7 +53,8 @@ class Comparison:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None."""
-        return _without_nan(asdict(self))
+        found: dict[str, Any] = _without_nan(asdict(self))
+        return found
 
 
 def compare(results: Results) -> Comparison | None:
@@ -106,11 +107,12 @@ def _cell(
     key: Key, runs: list[dict[str, Any]], accuracy: float, mean_length: float, iterations: float
 ) -> Cell:
     finished = [run for run in runs if run["status"] == "finished"]
-    means = [
-        mean_interval(math.nan if run[name] is None else float(run[name]) for run in finished)
-        for name in ("accuracy", "mean_length", "iterations")
-    ]
-    return Cell(*key, *means, accuracy, mean_length, iterations)
+
+    def mean(name: str) -> tuple[float, float]:
+        return mean_interval(math.nan if run[name] is None else float(run[name]) for run in finished)
+
+    ours = (mean("accuracy"), mean("mean_length"), mean("iterations"))
+    return Cell(*key, *ours, accuracy, mean_length, iterations)
 
 
 def _without_nan(value: Any) -> Any:

@@ -53,9 +53,7 @@ class Results:
                 **{name: _none(row[name]) for name in SCORES},
                 **({"error": row["error"]} if row["error"] else {}),
             }
-            for row in sorted(
-                self._store.rows(), key=lambda row: (order[row["entrant"]], row["replicate"])
-            )
+            for row in sorted(self._store.rows(), key=lambda row: (order[row["entrant"]], row["replicate"]))
         ]
 
     def frame(self) -> "pd.DataFrame":
@@ -81,9 +79,10 @@ class Results:
         return frame.astype({"accuracy": float, "mean_length": float, "seconds": float})
 
     def arrays(self, entrant: str, replicate: int = 0) -> Arrays:
-        """The arrays of a run: the agent's own, such as ``values`` and ``visits``, and
+        """The arrays of a run, by name.
 
-        ``lengths`` (steps of each training episode), ``test_lengths`` and ``test_reached``.
+        They are the agent's own, such as ``values`` and ``visits``, and ``lengths`` (steps of each
+        training episode), ``test_lengths`` and ``test_reached`` (one value a test episode).
 
         Raises:
             KeyError: when there is no such run.

@@ -94,9 +94,7 @@ def _plan(conditions: Conditions, runs: list[Run], n_jobs: int, driver: str) -> 
             if driver == "compiled":
                 raise ValueError(f"entrant {name!r} cannot be compiled: {reason}")
             _log.warning("%s runs interpreted: %s", agent.__name__, reason)
-        tasks = [
-            (compiled_driver.NAME, conditions, [r]) for r in runs if r.entrant.name not in reasons
-        ]
+        tasks = [(compiled_driver.NAME, conditions, [r]) for r in runs if r.entrant.name not in reasons]
     groups = min(joblib.effective_n_jobs(n_jobs), len(interpreted))
     groups = max(groups, math.ceil(len(interpreted) / _CARS_TOGETHER))
     tasks += [(pettingzoo_driver.NAME, conditions, interpreted[g::groups]) for g in range(groups)]

@@ -120,12 +120,14 @@ class Store:
     @property
     def config(self) -> dict[str, Any]:
         """The tournament, as ``Tournament.to_dict`` told it."""
-        return self._told("config")
+        found: dict[str, Any] = self._told("config")
+        return found
 
     @property
     def versions(self) -> dict[str, str]:
         """Of Python and the packages when the file was made."""
-        return self._told("versions")
+        found: dict[str, str] = self._told("versions")
+        return found
 
     def add(self, outcome: Outcome) -> None:
         """Keep a run, for good when this returns.
@@ -140,7 +142,7 @@ class Store:
             with self._connection:
                 self._connection.execute("BEGIN IMMEDIATE")
                 self._connection.execute(
-                    f"INSERT OR REPLACE INTO runs VALUES ({','.join('?' * 9)})", key + scores + costs
+                    "INSERT OR REPLACE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", key + scores + costs
                 )
                 self._connection.execute(
                     "INSERT OR REPLACE INTO arrays VALUES (?, ?, ?)", (*key, outcome.arrays)

@@ -55,9 +55,7 @@ def _paper(comparison: Comparison) -> RenderableType:
         "length",
         "paper",
     )
-    second = _table(
-        "Table 2. Iterations of learning", "n_p x n_v", "iterations", "paper", "difference"
-    )
+    second = _table("Table 2. Iterations of learning", "n_p x n_v", "iterations", "paper", "difference")
     algorithm = ""
     for cell in comparison.cells:
         if cell.algorithm != algorithm:

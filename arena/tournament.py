@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -63,9 +63,17 @@ class Conditions:
     seed: int
 
     def start_states(self, replicate: int) -> NDArray[np.float64]:
-        """Where the test episodes start, the same for all entrants; shape (episodes, 2)."""
-        rng = stream(self.seed, "evaluation", str(replicate))
-        return np.array([self.hill.reset(rng) for _ in range(self.evaluation.episodes)])
+        """Where the test episodes start, the same for all entrants; shape (episodes, 2), read-only."""
+        return _start_states(self, replicate)
+
+
+@lru_cache(maxsize=4)
+def _start_states(conditions: Conditions, replicate: int) -> NDArray[np.float64]:
+    rng = stream(conditions.seed, "evaluation", str(replicate))
+    states = [conditions.hill.reset(rng) for _ in range(conditions.evaluation.episodes)]
+    starts = np.array(states)
+    starts.flags.writeable = False
+    return starts
 
 
 @dataclass(frozen=True)
@@ -126,8 +134,8 @@ class Tournament:
             try:
                 entrant.create(hill, np.random.default_rng(0))
             except (TypeError, ValueError) as error:
-                kind = TypeError if isinstance(error, TypeError) else ValueError
-                raise kind(f"entrant {entrant.name!r}: {error}") from error
+                problem = TypeError if isinstance(error, TypeError) else ValueError
+                raise problem(f"entrant {entrant.name!r}: {error}") from error
 
     @cached_property
     def conditions(self) -> Conditions:

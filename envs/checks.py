@@ -19,9 +19,10 @@ def number(
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name} must be a number, got {value!r}")
-    if not math.isfinite(value) or not low <= value <= high or (above and value == low):
+    found = float(value)
+    if not math.isfinite(found) or not low <= found <= high or (above and found == low):
         raise ValueError(f"{name} must be {_range(low, high, above)}, got {value!r}")
-    return float(value)
+    return found
 
 
 def integer(name: str, value: Any, low: int | None = None) -> int:

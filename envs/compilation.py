@@ -12,7 +12,7 @@ import os
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -124,7 +124,7 @@ def _offer(reached: Reached) -> None:
         _offer_lowering(method)
 
 
-@lru_cache(maxsize=1)
+@cache
 def _offer_attributes() -> None:
     """Let ``thing.method`` in compiled code mean the method of the named-tuple class of ``thing``.
 
@@ -155,7 +155,7 @@ def _offer_attributes() -> None:
     infer_getattr(PlainMethods)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _offer_lowering(method: Callable[..., Any]) -> None:
     """A call of the method is a call of its plain function with the named tuple as first argument."""
     from numba import types
@@ -186,5 +186,9 @@ def _importable(parts: tuple[Any, ...]) -> bool:
 def _reason(error: Exception) -> str:
     """The line of numba's message that says what is wrong."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    told = [line for line in lines if not line.startswith(("Failed in", "During:", "File", ">>>", "-", "[", "There"))]
+    told = [
+        line
+        for line in lines
+        if not line.startswith(("Failed in", "During:", "File", ">>>", "-", "[", "There"))
+    ]
     return (told or lines or [type(error).__name__])[0]

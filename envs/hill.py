@@ -80,7 +80,7 @@ class Hill(_Constants):
 
     n_actions = 3
 
-    def __new__(
+    def __new__(  # noqa: D102 (described by the class)
         cls,
         omega: float = 3.0,
         mass: float = 1000.0,
@@ -120,11 +120,11 @@ class Hill(_Constants):
             start,
             number("max_start", max_start, start, goal),
             bool(inelastic_wall),
-            Integrator(integrator),
+            Integrator(integrator),  # type: ignore[arg-type]  # its _missing_ takes names
         )
 
     @classmethod
-    def _make(cls, iterable: Iterable[Any]) -> Self:
+    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]
         return cls(*iterable)  # so that _replace validates too
 
     @property

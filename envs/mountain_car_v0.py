@@ -38,7 +38,7 @@ def raw_env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
     return parallel_to_aec(parallel_env(**arguments))
 
 
-class parallel_env(ParallelEnv[str, Observation, int], EzPickle):
+class parallel_env(ParallelEnv[str, Observation, int], EzPickle):  # type: ignore[misc]
     """Several cars that drive at the same time and do not touch each other.
 
     Args:

@@ -9,6 +9,7 @@ know numba.
 import contextlib
 import inspect
 import os
+import re
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
@@ -75,27 +76,21 @@ def _compile(
     loop: Callable[..., Any], example: tuple[Any, ...], fingerprint: str, *, importable: bool
 ) -> Callable[..., Any]:
     import numba
-    from numba.core.errors import NumbaRuntimeError
 
     folder = cache_directory() if importable else None
     # Counting references to the agent's arrays doubles the time of a step, so it is off
-    # (``_nrt``) unless the agent's own code allocates memory.
+    # (``_nrt``) unless that fails, because the agent's own code allocates memory.
     counted = folder / f"{fingerprint}-counted" if folder else None
-    attempts = [True] if counted and counted.exists() else [False, True]
-    for counting in attempts:
-        options = {**_LOOP, "_nrt": counting}
+    for counting in (True,) if counted and counted.exists() else (False, True):
+        with _numba_cache(counted if counting else folder and folder / fingerprint):
+            kernel = numba.njit(loop, cache=folder is not None, **_LOOP, _nrt=counting)
         try:
-            with _numba_cache(counted if counting else folder and folder / fingerprint):
-                kernel = numba.njit(loop, cache=folder is not None, **options)
             kernel.compile(tuple(map(numba.typeof, example)))
-        except NumbaRuntimeError:
-            if counting:
-                raise
         except Exception as error:  # numba raises nearly anything
-            raise CompilationError(_reason(error)) from error
+            problem = error
         else:
             return kernel  # type: ignore[no-any-return]
-    raise AssertionError("unreachable")
+    raise CompilationError(_reason(problem)) from problem
 
 
 @contextlib.contextmanager
@@ -183,12 +178,14 @@ def _importable(parts: tuple[Any, ...]) -> bool:
     )
 
 
+# What numba wraps around the line that says what is wrong.
+_WRAPPING = re.compile(
+    r"[-\s]*(Failed in|Resolution failure|No implementation|>>>|There are|Of which|Overload in|With argument"
+    r"|Rejected as|\w+Error: Failed|During|raised from|File|None$|$)"
+)
+
+
 def _reason(error: Exception) -> str:
     """The line of numba's message that says what is wrong."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    told = [
-        line
-        for line in lines
-        if not line.startswith(("Failed in", "During:", "File", ">>>", "-", "[", "There"))
-    ]
-    return (told or lines or [type(error).__name__])[0]
+    lines = str(error).splitlines() or [type(error).__name__]
+    return next((line for line in lines if not _WRAPPING.match(line)), lines[0]).strip()

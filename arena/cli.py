@@ -78,7 +78,7 @@ def run(
 
 @app.command()
 def show(
-    file: Annotated[Path, typer.Argument(help="Results file.")],
+    file: Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")],
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Print the tables of a results file."""

@@ -130,9 +130,9 @@ def test_goal_is_reached_at_its_position_and_not_before() -> None:
 
 def test_start_is_at_rest_between_its_bounds_and_draws_one_number() -> None:
     rng, same = np.random.default_rng(3), np.random.default_rng(3)
-    starts = [Hill(min_start=-1.0, max_start=-0.9).reset(rng) for _ in range(1000)]
-    assert starts == [(pytest.approx(-1.0 + 0.1 * same.random(), abs=1e-15), 0.0) for _ in range(1000)]
-    assert rng.random() == same.random()
+    hill = Hill(min_start=-1.0, max_start=-0.75)
+    for _ in range(100):
+        assert hill.reset(rng) == (-1.0 + 0.25 * same.random(), 0.0)
 
 
 def test_friction_and_nothing_else_takes_the_energy_of_a_coasting_car() -> None:

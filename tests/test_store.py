@@ -1,0 +1,156 @@
+"""The results file and what is read back from it."""
+
+import json
+import math
+import sqlite3
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hand_made_agents import Failing, race_of
+
+from agents import MomentumAgent, RandomAgent
+from arena import Entrant, Tournament, load, run
+from arena.outcome import Outcome, pack, score, unpack
+from arena.store import SCHEMA_VERSION, Store
+
+
+@pytest.fixture
+def file(small: Tournament, tmp_path: Path) -> Path:
+    path = tmp_path / "small.sqlite"
+    run(small, path, n_jobs=1).close()
+    return path
+
+
+def test_the_frame_has_a_row_a_run_and_a_column_a_parameter(file: Path) -> None:
+    with load(file) as results:
+        frame = results.frame()
+        assert repr(results) == "<Results of 'small': 4 of 4 runs>"
+    assert list(frame.columns) == [
+        *("entrant", "agent", "bins", "discount", "step_size", "epsilon", "initial_values"),
+        *("count_visits", "goal", "replicate", "accuracy", "mean_length", "iterations", "seconds"),
+        *("driver", "status"),
+    ]
+    assert frame.entrant.tolist() == ["q", "q", "s", "s"]
+    assert frame.agent.tolist() == ["q-learning", "q-learning", "sarsa", "sarsa"]
+    assert frame.replicate.tolist() == [0, 1, 0, 1]
+    assert frame.bins.tolist() == [(5, 6), (5, 6), (6, 5), (6, 5)]
+    assert frame.groupby("bins").size().tolist() == [2, 2]
+    assert (frame.seconds > 0).all()
+    assert frame.iterations.between(1, 6 * 120).all()
+
+
+def test_arrays_come_back_and_agree_with_the_scores(file: Path) -> None:
+    with load(file) as results:
+        for row in results.frame().itertuples():
+            arrays = results.arrays(row.entrant, row.replicate)
+            assert arrays["values"].shape == arrays["visits"].shape == (30, 3)
+            assert arrays["lengths"].sum() == arrays["visits"].sum() == row.iterations
+            accuracy, mean_length = score(arrays["test_lengths"], arrays["test_reached"])
+            assert accuracy == row.accuracy
+            assert mean_length == row.mean_length or math.isnan(mean_length)
+        with pytest.raises(KeyError, match="no run 9 of 'q'"):
+            results.arrays("q", 9)
+
+
+def test_json_is_strict_and_complete() -> None:
+    tournament = race_of(Entrant("m", MomentumAgent), Entrant("r", RandomAgent))
+    with run(tournament, n_jobs=1) as results:
+        told = json.loads(json.dumps(results.to_dict(), allow_nan=False))
+    assert {key: told[key] for key in tournament.to_dict()} == tournament.to_dict()
+    momentum, random = told["runs"][0], told["runs"][2]
+    assert set(momentum) == {
+        *("entrant", "agent", "parameters", "replicate", "accuracy", "mean_length", "iterations"),
+        *("seconds", "driver", "status"),
+    }
+    assert momentum["accuracy"] == 100.0
+    assert 83 <= momentum["mean_length"] <= 150
+    assert random["accuracy"] == 0.0
+    assert random["mean_length"] is None
+    assert told["versions"]["numpy"] == np.__version__
+
+
+def test_the_score_is_the_paper_s() -> None:
+    lengths = np.array([100, 500, 120, 500])
+    assert score(lengths, np.array([True, False, True, False])) == (50.0, 110.0)
+    accuracy, mean_length = score(lengths, np.zeros(4, bool))
+    assert accuracy == 0.0
+    assert math.isnan(mean_length)
+
+
+def test_packed_arrays_are_the_same_bytes_for_the_same_arrays_and_never_objects() -> None:
+    arrays = {"a": np.arange(6.0).reshape(2, 3), "b": np.array([True, False])}
+    packed = pack(arrays)
+    assert packed == pack({name: array.copy() for name, array in arrays.items()})
+    assert all(np.array_equal(arrays[name], array) for name, array in unpack(packed).items())
+    with pytest.raises(ValueError, match="allow_pickle"):
+        pack({"o": np.array([{}], dtype=object)})
+
+
+def test_a_file_can_be_read_by_sqlite_alone_and_while_it_is_written(small: Tournament, tmp_path: Path) -> None:
+    path = tmp_path / "s.sqlite"
+    seen = []
+
+    def look(finished: int, _total: int) -> None:
+        with load(path) as results:
+            seen.append((finished, len(results.frame())))
+
+    run(small, path, n_jobs=1, progress=look).close()
+    assert seen == [(n, n) for n in range(5)]
+    connection = sqlite3.connect(path)
+    assert connection.execute("SELECT count(*) FROM runs WHERE status = 'finished'").fetchone() == (4,)
+    connection.close()
+
+
+def test_entrants_are_data(tmp_path: Path) -> None:
+    path = tmp_path / "s.sqlite"
+    name = "Robert'); DROP TABLE runs;-- <script>"
+    with run(race_of(Entrant(name, MomentumAgent)), path, n_jobs=1) as results:
+        assert set(results.frame().entrant) == {name}
+        assert results.arrays(name)["lengths"].shape == (6,)
+
+
+def test_failures_keep_their_traceback(tmp_path: Path) -> None:
+    with run(race_of(Entrant("bad", Failing)), tmp_path / "s.sqlite", n_jobs=1) as results:
+        for one in results.runs:
+            assert one["error"].startswith("Traceback")
+        assert results.arrays("bad") == {}
+
+
+def test_other_files_are_told_and_left_alone(tmp_path: Path, file: Path) -> None:
+    cases = {"text": b"hello", "empty": b"", "truncated": file.read_bytes()[:3000]}
+    for name, content in cases.items():
+        path = tmp_path / name
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=f"{name} is not a results file of the arena"):
+            load(path)
+        assert path.read_bytes() == content
+    other = tmp_path / "other"
+    connection = sqlite3.connect(other)
+    connection.execute("CREATE TABLE runs (x)")
+    connection.close()
+    with pytest.raises(ValueError, match="other is not a results file of the arena$"):
+        load(other)
+    with pytest.raises(ValueError, match="there is no results file .*none"):
+        load(tmp_path / "none")
+    connection = sqlite3.connect(file)
+    connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION + 1}")
+    connection.close()
+    with pytest.raises(ValueError, match=r"written by a newer arena \(schema 2, this one knows 1\)"):
+        load(file)
+
+
+def test_a_file_that_cannot_be_written_is_told(small: Tournament, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ValueError, match="cannot write the results file"):
+        run(small, tmp_path / "file" / "r.sqlite", n_jobs=1)
+
+
+def test_a_run_is_kept_once_it_is_added(tmp_path: Path, small: Tournament) -> None:
+    path = tmp_path / "s.sqlite"
+    store = Store.create(path, small.to_dict())
+    store.add(Outcome("q", 1, "compiled", "finished", 50.0, 100.0, 7, 0.1, pack({"x": np.zeros(2)})))
+    with load(path) as other:  # another connection sees it, though the first is still open
+        assert other.frame().accuracy.tolist() == [50.0]
+    assert store.finished() == {("q", 1)}
+    store.close()

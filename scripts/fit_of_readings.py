@@ -1,0 +1,38 @@
+"""How well does each reading of the paper's protocol fit its Table 2?
+
+    python scripts/fit_of_readings.py --replicates 2
+
+runs the paper's tournament under each reading and prints a Markdown table (docs/readings.md).
+"""
+
+import argparse
+
+from arena import paper, run
+from arena.paper import compare
+from arena.readings import READINGS
+
+
+def main() -> None:
+    """Parse, run, print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--replicates", type=int, default=2)
+    parser.add_argument("--readings", nargs="+", choices=READINGS, default=list(READINGS))
+    parser.add_argument("--jobs", type=int, default=-1)
+    arguments = parser.parse_args()
+    print("| reading | what differs | correlation | mean difference | root mean square | accuracy |")
+    print("|---|---|---:|---:|---:|---:|")
+    for reading in arguments.readings:
+        tournament = paper(replicates=arguments.replicates, reading=reading)
+        with run(tournament, n_jobs=arguments.jobs) as results:
+            found = compare(results)
+        assert found is not None  # noqa: S101 (the tournament is the paper's)
+        print(
+            f"| `{reading}` | {READINGS[reading].description} | {found.iterations_correlation:.3f} "
+            f"| {found.iterations_difference:+.1f}% | {found.iterations_error:.1f}% "
+            f"| {found.mean_accuracy:.1f}% |",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,127 @@
+"""What README and docs say is executed, and what they show is what the commands print."""
+
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from arena.configuration import from_dict
+from arena.readings import READINGS
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(language: str) -> list[object]:
+    """The code blocks of all pages in ``language``, as parameters of a test."""
+    return [
+        pytest.param(code, id=f"{page.name}-{number}")
+        for page in PAGES
+        for number, code in enumerate(re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL))
+    ]
+
+
+@pytest.mark.parametrize("code", blocks("python"))
+def test_python_examples_run(code: str, tmp_path: Path) -> None:
+    (tmp_path / "example.py").write_text(code)
+    command = [sys.executable, "-W", "error::DeprecationWarning:__main__", "example.py"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+
+
+@pytest.mark.parametrize("code", blocks("toml"))
+def test_toml_examples_are_tournaments(code: str) -> None:
+    assert from_dict(tomllib.loads(code)).runs
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)", page.read_text()):
+        assert target.startswith("http") or (page.parent / target).exists(), target
+
+
+def test_every_reading_is_documented() -> None:
+    text = (ROOT / "docs" / "readings.md").read_text()
+    for name, reading in READINGS.items():
+        assert f"| `{name}` | {reading.description} |" in text
+
+
+@pytest.mark.parametrize(
+    ("script", "arguments", "expected"),
+    [
+        ("grids_of_one_algorithm.py", "--episodes 5 --replicates 1 --bins 4 5 --jobs 1", "(5, 4)"),
+        ("algorithms_on_one_grid.py", "--episodes 5 --replicates 2 --bins 4 4 --jobs 2", "momentum"),
+        ("bench_learning.py", "--episodes 30 --repeats 1", "QLearning: "),
+        ("fit_of_readings.py", "--replicates 1 --readings literal --jobs 2", "| `literal` | zero table"),
+    ],
+)
+def test_scripts_run(script: str, arguments: str, expected: str, tmp_path: Path) -> None:
+    command = [sys.executable, str(ROOT / "scripts" / script), *arguments.split()]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert expected in done.stdout
+
+
+@pytest.mark.slow
+def test_the_readme_shows_what_the_command_prints(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "arena", "run", "paper"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    printed = "\n".join(line.rstrip() for line in done.stdout.splitlines())
+    shown = re.search(r"```text\n(.*?)\n```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert shown is not None
+    assert shown.group(1) == printed
+
+
+@pytest.mark.slow
+def test_the_learning_loop_keeps_up_with_one_written_by_hand() -> None:
+    command = [sys.executable, str(ROOT / "scripts" / "bench_learning.py"), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    for name, row in json.loads(done.stdout).items():
+        assert row["ratio"] <= 1.5, name
+
+
+@pytest.mark.slow
+def test_the_paper_s_tournament_stays_under_a_gibibyte(tmp_path: Path) -> None:
+    code = """
+import os, threading, time
+
+def tree():
+    total, todo = 0, [os.getpid()]
+    while todo:
+        pid = todo.pop()
+        try:
+            with open(f"/proc/{pid}/smaps_rollup") as f:
+                total += next(int(line.split()[1]) for line in f if line.startswith("Pss:"))
+            for task in os.listdir(f"/proc/{pid}/task"):
+                with open(f"/proc/{pid}/task/{task}/children") as f:
+                    todo += map(int, f.read().split())
+        except (OSError, StopIteration):
+            pass
+    return total / 1024
+
+peak, over = 0.0, threading.Event()
+
+def watch():
+    global peak
+    while not over.wait(0.2):
+        peak = max(peak, tree())
+
+if __name__ == "__main__":
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    run(paper(replicates=2), "r.sqlite").frame()
+    over.set()
+    watcher.join()
+    print(peak)
+"""
+    if not Path("/proc/self/smaps_rollup").exists():
+        pytest.skip("the memory of all processes together is read from Linux's /proc")
+    (tmp_path / "watched.py").write_text(code)
+    command = [sys.executable, "watched.py"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert 100 < float(done.stdout) < 1024  # MiB

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from arena import Entrant, Evaluation, Tournament, Training
 
-
 ACTIONS = {"left": 0, "right": 2}
 
 

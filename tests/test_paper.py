@@ -21,7 +21,9 @@ def test_the_published_tables_are_the_paper_s() -> None:
     # Section 4.3: "a positive correlation (0.983) between the number of iterations"
     iterations = [[tables[a, *key][2] for key in keys] for a in ("q-learning", "sarsa")]
     assert correlation(*iterations) == pytest.approx(0.983, abs=5e-4)
-    assert correlation([tables["sarsa", *k][0] for k in keys], iterations[1]) == pytest.approx(-0.33, abs=5e-3)
+    assert correlation([tables["sarsa", *k][0] for k in keys], iterations[1]) == pytest.approx(
+        -0.33, abs=5e-3
+    )
 
 
 def pretend(factor: float) -> Results:

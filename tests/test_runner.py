@@ -49,7 +49,7 @@ def test_another_tournament_never_overwrites_a_file(small: Tournament, tmp_path:
     path = tmp_path / "small.sqlite"
     run(small, path, n_jobs=1).close()
     before = path.read_bytes()
-    with pytest.raises(ValueError, match="small.sqlite holds another tournament .its name is 'small'"):
+    with pytest.raises(ValueError, match=r"small.sqlite holds another tournament .its name is 'small'"):
         run(race_of(*small.entrants), path)
     assert path.read_bytes() == before
 
@@ -66,8 +66,10 @@ def test_a_class_that_cannot_be_compiled_runs_interpreted_and_the_reason_is_said
     assert set(frame.status) == {"finished"}
     assert sorted(caplog.messages) == [
         "Scripted runs interpreted: it is no NamedTuple",
-        "Uncompilable runs interpreted: Untyped global name 'ACTIONS': "
-        "Cannot determine Numba type of <class 'dict'>",
+        (
+            "Uncompilable runs interpreted: Untyped global name 'ACTIONS': "
+            "Cannot determine Numba type of <class 'dict'>"
+        ),
     ]
 
 

@@ -44,6 +44,13 @@ def test_an_entrant_of_any_class_with_the_methods_will_do() -> None:
     assert entrant.to_dict()["agent"] == "hand_made_agents:Scripted"
 
 
+# What the types forbid is passed on purpose.
+entrant: Any = Entrant
+tournament: Any = Tournament
+evaluation: Any = Evaluation
+swept: Any = sweep
+
+
 class NoGreedy(NamedTuple):
     x: int = 0
 
@@ -66,20 +73,20 @@ class Demanding(NoGreedy):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Entrant("", Sarsa), "name must be a printable text that is not empty, got ''"),
-        (lambda: Entrant("a\x1b[2J", Sarsa), "name must be a printable text"),
-        (lambda: Entrant(3, Sarsa), "name must be a printable text that is not empty, got 3"),
-        (lambda: Entrant("s", "sarsa"), "agent must be a class, got 'sarsa'"),
-        (lambda: Entrant("s", NoGreedy), "agent must have the methods .* lacks greedy"),
-        (lambda: Entrant("s", Sarsa, bin=3), "parameter of sarsa must be .*'bin'; did you mean 'bins'"),
-        (lambda: Entrant("s", MomentumAgent, x=3), "parameter of momentum must be one of nothing, got 'x'"),
-        (lambda: Entrant("s", RandomAgent, rng=3), "parameter of random must be one of nothing, got 'rng'"),
-        (lambda: Entrant("s", Demanding), "parameter must of .*Demanding must be given"),
-        (lambda: Entrant("s", Sarsa, epsilon=0.1), "epsilon must be a LinearDecay, got 0.1"),
-        (lambda: Entrant("s", Sarsa, epsilon={"strt": 0.1}), "field of epsilon .*did you mean 'start'"),
-        (lambda: Entrant("s", Sarsa, step_size={"A": -1}), "A must be .* greater than 0, got -1"),
-        (lambda: list(sweep("s", Sarsa, over={"bins": []})), "sweep of bins must be a list .* got \\[\\]"),
-        (lambda: list(sweep("s", Sarsa, over={"bins": 3})), "sweep of bins must be a list .* got 3"),
+        (lambda: entrant("", Sarsa), "name must be a printable text that is not empty, got ''"),
+        (lambda: entrant("a\x1b[2J", Sarsa), "name must be a printable text"),
+        (lambda: entrant(3, Sarsa), "name must be a printable text that is not empty, got 3"),
+        (lambda: entrant("s", "sarsa"), "agent must be a class, got 'sarsa'"),
+        (lambda: entrant("s", NoGreedy), "agent must have the methods .* lacks greedy"),
+        (lambda: entrant("s", Sarsa, bin=3), "parameter of sarsa must be .*'bin'; did you mean 'bins'"),
+        (lambda: entrant("s", MomentumAgent, x=3), "parameter of momentum must be one of nothing, got 'x'"),
+        (lambda: entrant("s", RandomAgent, rng=3), "parameter of random must be one of nothing, got 'rng'"),
+        (lambda: entrant("s", Demanding), "parameter must of .*Demanding must be given"),
+        (lambda: entrant("s", Sarsa, epsilon=0.1), "epsilon must be a LinearDecay, got 0.1"),
+        (lambda: entrant("s", Sarsa, epsilon={"strt": 0.1}), "field of epsilon .*did you mean 'start'"),
+        (lambda: entrant("s", Sarsa, step_size={"A": -1}), "A must be .* greater than 0, got -1"),
+        (lambda: list(swept("s", Sarsa, over={"bins": []})), "sweep of bins must be a list .* got \\[\\]"),
+        (lambda: list(swept("s", Sarsa, over={"bins": 3})), "sweep of bins must be a list .* got 3"),
     ],
 )
 def test_a_bad_entrant_is_told_in_one_sentence(make: Any, message: str) -> None:
@@ -106,21 +113,21 @@ ONE = Entrant("s", Sarsa)
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Tournament(()), "entrants must be one or more, got none"),
-        (lambda: Tournament((ONE, ONE)), "entrants must have names that differ, got 's' twice"),
-        (lambda: Tournament(("sarsa",)), "entrants must be Entrant objects, got 'sarsa'"),
-        (lambda: Tournament((ONE,), replicates=0), "replicates must be at least 1, got 0"),
-        (lambda: Tournament((ONE,), replicates=2.5), "replicates must be an integer, got 2.5"),
-        (lambda: Tournament((ONE,), seed=-1), "seed must be at least 0, got -1"),
-        (lambda: Tournament((ONE,), hill={}), "hill must be a Hill, got {}"),
-        (lambda: Tournament((ONE,), training=4000), "training must be a Training, got 4000"),
-        (lambda: Tournament((ONE,), reading="litral"), "reading must .*; did you mean 'literal'"),
-        (lambda: Tournament((ONE,), name=""), "name must be a printable text"),
+        (lambda: tournament(()), "entrants must be one or more, got none"),
+        (lambda: tournament((ONE, ONE)), "entrants must have names that differ, got 's' twice"),
+        (lambda: tournament(("sarsa",)), "entrants must be Entrant objects, got 'sarsa'"),
+        (lambda: tournament((ONE,), replicates=0), "replicates must be at least 1, got 0"),
+        (lambda: tournament((ONE,), replicates=2.5), "replicates must be an integer, got 2.5"),
+        (lambda: tournament((ONE,), seed=-1), "seed must be at least 0, got -1"),
+        (lambda: tournament((ONE,), hill={}), "hill must be a Hill, got {}"),
+        (lambda: tournament((ONE,), training=4000), "training must be a Training, got 4000"),
+        (lambda: tournament((ONE,), reading="litral"), "reading must .*; did you mean 'literal'"),
+        (lambda: tournament((ONE,), name=""), "name must be a printable text"),
         (lambda: Training(episodes=0), "training episodes must be at least 1, got 0"),
         (lambda: Training(max_steps=-5), "training max_steps must be at least 1, got -5"),
-        (lambda: Evaluation(episodes=math.nan), "evaluation episodes must be an integer, got nan"),
-        (lambda: Tournament((Entrant("s", Sarsa, bins=0),)), "entrant 's': bins must be at least 1, got 0"),
-        (lambda: Tournament((Entrant("s", Sarsa, discount=2),)), "entrant 's': discount must be in .0, 1."),
+        (lambda: evaluation(episodes=math.nan), "evaluation episodes must be an integer, got nan"),
+        (lambda: tournament((Entrant("s", Sarsa, bins=0),)), "entrant 's': bins must be at least 1, got 0"),
+        (lambda: tournament((Entrant("s", Sarsa, discount=2),)), "entrant 's': discount must be in .0, 1."),
     ],
 )
 def test_a_bad_tournament_is_told_in_one_sentence(make: Any, message: str) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -49,6 +49,7 @@ def encode_each(grid: Grid, observations: Floats, cells: NDArray[np.int64]) -> N
         cells[i] = grid.encode(observations[i])
 
 
+@settings(deadline=None)
 @given(st.data(), grids())
 def test_encode_is_the_papers_equation_in_exact_arithmetic(data: st.DataObject, grid: Grid) -> None:
     axes = list(zip(grid.low, grid.high, grid.bins))
@@ -57,6 +58,7 @@ def test_encode_is_the_papers_equation_in_exact_arithmetic(data: st.DataObject, 
     assert grid.encode(observation) == np.ravel_multi_index(indices, grid.bins)
 
 
+@settings(deadline=None)
 @given(st.data(), grids())
 def test_encode_grows_with_each_value(data: st.DataObject, grid: Grid) -> None:
     observation = [data.draw(interesting_values(*axis)) for axis in zip(grid.low, grid.high, grid.bins)]

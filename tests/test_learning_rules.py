@@ -100,11 +100,11 @@ def test_counts_belong_to_their_cell(count_visits: str, again: int) -> None:
     agent = make(QLearning, step_size=HarmonicRate(1.0, 2.0, 2.0), count_visits=count_visits)
     agent.begin_episode()
     taken = []
-    for observation in (B, A, B):
+    for observation in (A, A, B, B):
         agent.values[:] = 0.0
         agent.learn(observation, 0, 1.0, A, 0, True)
         taken.append(agent.values.max())
-    assert taken == [0.5, 0.5, 1.0 / (2.0 + 2.0 * again)]
+    assert taken == [0.5, 1.0 / (2.0 + 2.0 * again)] * 2
 
 
 # The table before learning

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.contract import Observation, Task
-from envs.checks import integer, number
+from envs.checks import instance, integer, number
 
 
 class _Parts(NamedTuple):
@@ -44,8 +44,8 @@ class Grid(_Parts):
     __slots__ = ()
 
     def __new__(cls, low: Iterable[float], high: Iterable[float], bins: int | Iterable[int]) -> Self:  # noqa: D102 (described by the class)
-        lows = tuple(number("low", x) for x in low)
-        highs = tuple(number("high", x) for x in high)
+        lows = tuple(number("low", x) for x in instance("low", low, Iterable))
+        highs = tuple(number("high", x) for x in instance("high", high, Iterable))
         if len(lows) != len(highs) or not lows:
             raise ValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
         counts = _counts(bins, len(lows))
@@ -58,11 +58,19 @@ class Grid(_Parts):
         scales = tuple(_scale(a, b, n, row) for a, b, n, row in zip(lows, highs, counts, edges, strict=True))
         return super().__new__(cls, lows, highs, counts, scales, edges)
 
+    @classmethod
+    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]
+        low, high, bins, *_ = iterable  # the rest follows from these
+        return cls(low, high, bins)
+
     def __getnewargs__(self) -> tuple[Any, ...]:
         return self.low, self.high, self.bins
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Grid) and self.__getnewargs__() == other.__getnewargs__()
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
 
     def __hash__(self) -> int:
         return hash(self.__getnewargs__())

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple, Self
 
-from envs.checks import number
+from envs.checks import Validated, number
 
 
 class _Line(NamedTuple):
@@ -10,7 +10,7 @@ class _Line(NamedTuple):
     end: float
 
 
-class LinearDecay(_Line):
+class LinearDecay(Validated, _Line):  # type: ignore[misc]
     """From ``start`` to ``end`` in a straight line over the training (paper, section 4.3).
 
     Args:
@@ -37,7 +37,7 @@ class _Harmonic(NamedTuple):
     C: float
 
 
-class HarmonicRate(_Harmonic):
+class HarmonicRate(Validated, _Harmonic):  # type: ignore[misc]
     """Step size ``A / (B + C n)`` after n visits (paper, Eq. 15); ``C = 0`` is the constant A / B.
 
     Args:

@@ -61,6 +61,9 @@ class Tabular(NamedTuple):
         grid = Grid.over(task, bins)
         shape = (grid.size, task.n_actions)
         discount = number("discount", discount, 0, 1)
+        for name, schedule in (("step_size", step_size), ("epsilon", epsilon)):
+            if not callable(getattr(schedule, "at", None)):
+                raise TypeError(f"{name} must be a schedule with a method at, got {schedule!r}")
         update = make_update(shape, step_size, discount, count_visits, goal)
         return cls(grid, _initial(shape, initial_values, rng), np.zeros(shape, np.int64), update, epsilon)
 

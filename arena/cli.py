@@ -136,7 +136,7 @@ def _run(tournament: Tournament, out: Path, jobs: int, driver: str) -> Results:
 
 
 def _show(results: Results, *, as_json: bool) -> None:
-    from arena.paper import compare
+    from arena.comparison import compare
     from arena.tables import render
 
     if as_json:

@@ -152,8 +152,6 @@ def _settle(name: str, value: Any, default: Any) -> Any:
         for key in value:
             choice(f"field of {name}", key, kind._fields)
         return kind(**value)
-    if hasattr(type(default), "_fields") and not isinstance(value, type(default)):
-        raise TypeError(f"{name} must be a {type(default).__name__}, got {value!r}")
     return tuple(value) if isinstance(value, list) else value
 
 

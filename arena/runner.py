@@ -12,7 +12,7 @@ from arena.outcome import Outcome
 from arena.results import Results
 from arena.store import Store
 from arena.tournament import Conditions, Run, Tournament
-from envs.checks import choice, integer
+from envs.checks import choice, instance, integer
 from envs.compilation import CompilationError
 
 DRIVERS = ("auto", "compiled", "pettingzoo")
@@ -47,8 +47,7 @@ def run(
         TypeError, ValueError: when an argument breaks its rule, ``out`` is another tournament's
             file or cannot be written, or an agent cannot be compiled that has to be.
     """
-    if not isinstance(tournament, Tournament):
-        raise TypeError(f"tournament must be a Tournament, got {tournament!r}")
+    instance("tournament", tournament, Tournament)
     choice("driver", driver, DRIVERS)
     if integer("n_jobs", n_jobs) == 0:
         raise ValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")

@@ -8,7 +8,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from arena.paper import MINIMUM_ACCURACY, Comparison, compare
+from arena.comparison import MINIMUM_ACCURACY, Comparison, compare
 from arena.readings import READINGS
 from arena.results import Results
 from arena.statistics import mean_interval

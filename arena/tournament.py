@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from arena.entrant import Entrant, plain
 from arena.readings import READINGS
 from envs import Hill
-from envs.checks import choice, integer
+from envs.checks import choice, instance, integer
 from envs.streams import stream
 
 
@@ -121,8 +121,7 @@ class Tournament:
     def __post_init__(self) -> None:
         reading = READINGS[choice("reading", self.reading, READINGS)]
         for attribute, kind in (("hill", Hill), ("training", Training), ("evaluation", Evaluation)):
-            if not isinstance(getattr(self, attribute), kind):
-                raise TypeError(f"{attribute} must be a {kind.__name__}, got {getattr(self, attribute)!r}")
+            instance(attribute, getattr(self, attribute), kind)
         if not isinstance(self.name, str) or not self.name.strip() or not self.name.isprintable():
             raise ValueError(f"name must be a printable text that is not empty, got {self.name!r}")
         _integers(self, "", replicates=1, seed=0)

@@ -5,7 +5,28 @@ import numbers
 import operator
 from collections.abc import Iterable
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, Self
+
+
+class Validated:
+    """Mixin of a named tuple with a constructor that validates: ``_replace`` validates, too."""
+
+    __slots__ = ()
+
+    @classmethod
+    def _make(cls, iterable: Iterable[Any]) -> Self:
+        return cls(*iterable)
+
+
+def instance(name: str, value: Any, kind: type[Any]) -> Any:
+    """``value`` if it is a ``kind``.
+
+    Raises:
+        TypeError: when it is not.
+    """
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
+    return value
 
 
 def number(
@@ -19,7 +40,10 @@ def number(
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name} must be a number, got {value!r}")
-    found = float(value)
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
     if not math.isfinite(found) or not low <= found <= high or (above and found == low):
         raise ValueError(f"{name} must be {_range(low, high, above)}, got {value!r}")
     return found

@@ -1,13 +1,12 @@
 """The mountain car's hill and physics: Eqs. (1)-(7) of the paper."""
 
 import math
-from collections.abc import Iterable
 from enum import IntEnum
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
-from envs.checks import choice, number
+from envs.checks import Validated, choice, number
 
 State = tuple[float, float]
 
@@ -49,7 +48,7 @@ class _Constants(NamedTuple):
     integrator: Integrator
 
 
-class Hill(_Constants):
+class Hill(Validated, _Constants):  # type: ignore[misc]
     """A car with a thruster on the hill ``y = sin(omega x)``; by default Eq. (7) of the paper.
 
     An immutable named tuple of constants. A state is ``(position, velocity)``; the actions are
@@ -122,10 +121,6 @@ class Hill(_Constants):
             bool(inelastic_wall),
             Integrator(integrator),  # type: ignore[arg-type]  # its _missing_ takes names
         )
-
-    @classmethod
-    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]
-        return cls(*iterable)  # so that _replace validates too
 
     @property
     def low(self) -> State:

@@ -14,12 +14,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 from gymnasium import spaces
-from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 
-from envs.checks import integer, number
+from envs.checks import instance, integer, number
 from envs.hill import Hill, State
 from envs.streams import stream
 
@@ -38,7 +37,7 @@ def raw_env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
     return parallel_to_aec(parallel_env(**arguments))
 
 
-class parallel_env(ParallelEnv[str, Observation, int], EzPickle):  # type: ignore[misc]
+class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]
     """Several cars that drive at the same time and do not touch each other.
 
     Args:
@@ -72,14 +71,13 @@ class parallel_env(ParallelEnv[str, Observation, int], EzPickle):  # type: ignor
         *,
         max_cycles: int | None = None,
     ) -> None:
-        EzPickle.__init__(self, cars, hill, max_steps, same_start, render_mode, max_cycles=max_cycles)
         if render_mode is not None:
             raise ValueError(f"render_mode must be None, got {render_mode!r}")
         self.possible_agents = _names(cars)
         self.agents: list[str] = []
-        self.hill = hill
+        self.hill = instance("hill", hill, Hill)
         self.max_steps = integer("max_steps", max_steps if max_cycles is None else max_cycles, 1)
-        self.same_start = same_start
+        self.same_start = instance("same_start", same_start, bool)
         self.render_mode = render_mode
         low, high = np.array(hill.low), np.array(hill.high)
         self.observation_spaces = {
@@ -138,7 +136,7 @@ class parallel_env(ParallelEnv[str, Observation, int], EzPickle):  # type: ignor
             actions: one for each live car.
 
         Raises:
-            ValueError: when a live car has no action, or one that is not 0, 1 or 2.
+            TypeError, ValueError: when a live car has no action, or one that is not 0, 1 or 2.
         """
         cars = self.agents
         chosen = [_action(actions, car, self.hill.n_actions) for car in cars]
@@ -184,7 +182,9 @@ def _starts(hill: Hill, starts: Any, cars: list[str]) -> dict[str, State]:
         raise ValueError(f"start must give cars of {cars}, got {starts!r}")
     checked = {}
     for car, state in starts.items():
-        position, velocity = state
+        if not isinstance(state, Iterable) or len(pair := tuple(state)) != 2:
+            raise ValueError(f"start of {car} must be (position, velocity), got {state!r}")
+        position, velocity = pair
         checked[car] = (
             number(f"start position of {car}", position, hill.min_position, hill.goal_position),
             number(f"start velocity of {car}", velocity, hill.min_velocity, hill.max_velocity),

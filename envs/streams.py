@@ -10,9 +10,9 @@ import numpy as np
 
 def stream(seed: int | np.random.SeedSequence, purpose: str, identity: str = "") -> np.random.Generator:
     """The generator for ``purpose`` of the one named ``identity`` under the master ``seed``."""
-    entropy = seed.entropy if isinstance(seed, np.random.SeedSequence) else seed
-    key = (stable_hash(purpose), stable_hash(identity))
-    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(entropy, spawn_key=key)))
+    master = seed if isinstance(seed, np.random.SeedSequence) else np.random.SeedSequence(seed)
+    key = (*master.spawn_key, stable_hash(purpose), stable_hash(identity))
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(master.entropy, spawn_key=key)))
 
 
 def stable_hash(text: str) -> int:

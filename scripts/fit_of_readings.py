@@ -8,7 +8,7 @@ runs the paper's tournament under each reading and prints a Markdown table (docs
 import argparse
 
 from arena import paper, run
-from arena.paper import compare
+from arena.comparison import compare
 from arena.readings import READINGS
 
 

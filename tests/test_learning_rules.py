@@ -214,3 +214,16 @@ def test_momentum_agent_thrusts_the_way_the_car_moves() -> None:
     agent, rng = MomentumAgent.create(Hill()), np.random.default_rng(1)
     for velocity, action in ((0.01, 2), (0.0, 2), (-1e-300, 0), (-0.07, 0)):
         assert agent.greedy((-0.5, velocity)) == agent.act((-0.5, velocity), 0.0, rng) == action
+
+
+@pytest.mark.parametrize(
+    "replace",
+    [
+        lambda: LinearDecay()._replace(end=3),
+        lambda: HarmonicRate()._replace(A=0),
+        lambda: Sarsa.create(Hill(), step_size=0.1),  # type: ignore[arg-type]
+    ],
+)
+def test_no_way_leads_around_the_validation_of_parameters(replace: Any) -> None:
+    with pytest.raises((TypeError, ValueError), match=r"^(end|A|step_size) must be "):
+        replace()

@@ -255,7 +255,6 @@ def test_bad_seed_is_refused(error: type[Exception], seed: Any) -> None:
 
 
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda cars: pickle.loads(pickle.dumps(cars))])  # noqa: S301
-@pytest.mark.xfail(reason="EzPickle keeps the constructor's arguments only, not where the cars are")
 def test_copy_of_a_running_environment_goes_on_the_same(copied: Any) -> None:
     cars = parallel_env(["a", "b"], max_steps=20)
     drive(cars, 5, 7)
@@ -264,3 +263,24 @@ def test_copy_of_a_running_environment_goes_on_the_same(copied: Any) -> None:
     actions = {"a": 2, "b": 0}
     assert exactly(other.step(actions)[0]) == exactly(cars.step(actions)[0])
     assert drive(other, 20) == drive(cars, 20)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: make_cars(hill=3), "hill must be a Hill, got 3"),
+        (lambda: make_cars(same_start="no"), "same_start must be a bool, got 'no'"),
+        (lambda: make_cars().reset(options={"start": {"car_0": 1}}), "start of car_0 must be .* got 1"),
+        (
+            lambda: make_cars().reset(options={"start": {"car_0": (1,)}}),
+            r"start of car_0 must be .* got \(1,\)",
+        ),
+    ],
+)
+def test_each_message_names_what_was_wrong(make: Any, message: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=message):
+        make()
+
+
+def make_cars(**arguments: Any) -> Any:
+    return parallel_env(**arguments)

@@ -82,7 +82,6 @@ class Demanding(NoGreedy):
         (lambda: entrant("s", MomentumAgent, x=3), "parameter of momentum must be one of nothing, got 'x'"),
         (lambda: entrant("s", RandomAgent, rng=3), "parameter of random must be one of nothing, got 'rng'"),
         (lambda: entrant("s", Demanding), "parameter must of .*Demanding must be given"),
-        (lambda: entrant("s", Sarsa, epsilon=0.1), "epsilon must be a LinearDecay, got 0.1"),
         (lambda: entrant("s", Sarsa, epsilon={"strt": 0.1}), "field of epsilon .*did you mean 'start'"),
         (lambda: entrant("s", Sarsa, step_size={"A": -1}), "A must be .* greater than 0, got -1"),
         (lambda: list(swept("s", Sarsa, over={"bins": []})), "sweep of bins must be a list .* got \\[\\]"),
@@ -127,6 +126,7 @@ ONE = Entrant("s", Sarsa)
         (lambda: Training(max_steps=-5), "training max_steps must be at least 1, got -5"),
         (lambda: evaluation(episodes=math.nan), "evaluation episodes must be an integer, got nan"),
         (lambda: tournament((Entrant("s", Sarsa, bins=0),)), "entrant 's': bins must be at least 1, got 0"),
+        (lambda: tournament((Entrant("s", Sarsa, epsilon=0.1),)), "epsilon must be a schedule .* got 0.1"),
         (lambda: tournament((Entrant("s", Sarsa, discount=2),)), "entrant 's': discount must be in .0, 1."),
     ],
 )

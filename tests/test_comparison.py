@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from arena import Evaluation, Results, Training, paper, quick, run
+from arena.comparison import compare, published
 from arena.outcome import Outcome
-from arena.paper import compare, published
 from arena.statistics import correlation, mean_interval
 from arena.store import Store
 

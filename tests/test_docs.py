@@ -16,6 +16,14 @@ ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
+def succeed(*arguments: str, cwd: Path) -> str:
+    """What a Python process prints that ends well and in time."""
+    command = [sys.executable, *arguments]
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 def blocks(language: str) -> list[object]:
     """The code blocks of all pages in ``language``, as parameters of a test."""
     return [
@@ -28,10 +36,7 @@ def blocks(language: str) -> list[object]:
 @pytest.mark.parametrize("code", blocks("python"))
 def test_python_examples_run(code: str, tmp_path: Path) -> None:
     (tmp_path / "example.py").write_text(code)
-    command = [sys.executable, "-W", "error::DeprecationWarning:__main__", "example.py"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    succeed("-W", "error::DeprecationWarning:__main__", "example.py", cwd=tmp_path)
 
 
 @pytest.mark.parametrize("code", blocks("toml"))
@@ -61,17 +66,13 @@ def test_every_reading_is_documented() -> None:
     ],
 )
 def test_scripts_run(script: str, arguments: str, expected: str, tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "scripts" / script), *arguments.split()]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert expected in done.stdout
+    assert expected in succeed(str(ROOT / "scripts" / script), *arguments.split(), cwd=tmp_path)
 
 
 @pytest.mark.slow
 def test_the_readme_shows_what_the_command_prints(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "arena", "run", "paper"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
-    printed = "\n".join(line.rstrip() for line in done.stdout.splitlines())
+    output = succeed("-m", "arena", "run", "paper", cwd=tmp_path)
+    printed = "\n".join(line.rstrip() for line in output.splitlines())
     shown = re.search(r"```text\n(.*?)\n```", (ROOT / "README.md").read_text(), re.DOTALL)
     assert shown is not None
     assert shown.group(1) == printed
@@ -79,16 +80,15 @@ def test_the_readme_shows_what_the_command_prints(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_learning_loop_keeps_up_with_one_written_by_hand() -> None:
-    command = [sys.executable, str(ROOT / "scripts" / "bench_learning.py"), "--json"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    for name, row in json.loads(done.stdout).items():
+    for name, row in json.loads(succeed("scripts/bench_learning.py", "--json", cwd=ROOT)).items():
         assert row["ratio"] <= 1.5, name
 
 
 @pytest.mark.slow
 def test_the_paper_s_tournament_stays_under_a_gibibyte(tmp_path: Path) -> None:
     code = """
-import os, threading, time
+import os, threading
+from arena import paper, run
 
 def tree():
     total, todo = 0, [os.getpid()]
@@ -112,7 +112,7 @@ def watch():
         peak = max(peak, tree())
 
 if __name__ == "__main__":
-    watcher = threading.Thread(target=watch)
+    watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
     run(paper(replicates=2), "r.sqlite").frame()
     over.set()
@@ -122,6 +122,6 @@ if __name__ == "__main__":
     if not Path("/proc/self/smaps_rollup").exists():
         pytest.skip("the memory of all processes together is read from Linux's /proc")
     (tmp_path / "watched.py").write_text(code)
-    command = [sys.executable, "watched.py"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert 100 < float(done.stdout) < 1024  # MiB
+    peak = float(succeed("watched.py", cwd=tmp_path))
+    print(f"peak memory {peak:.0f} MiB")
+    assert 100 < peak < 1024

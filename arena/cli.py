@@ -1,6 +1,7 @@
 """The command ``arena``. Progress and errors go to stderr, results to stdout."""
 
 import json
+import re
 import sys
 from collections.abc import Sequence
 from enum import StrEnum
@@ -64,7 +65,7 @@ def run(
         raise ValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
     given = {"replicates": replicates, "seed": seed, "reading": reading}
     chosen = _tournament(tournament, {key: value for key, value in given.items() if value is not None})
-    out = out or Path("runs") / f"{chosen.name}.sqlite"
+    out = out or _default_file(chosen.name)
     try:
         results = _run(chosen, out, jobs, driver.value)
     except KeyboardInterrupt:
@@ -109,6 +110,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         return BAD_INPUT
     return code if isinstance(code, int) else 0
+
+
+def _default_file(name: str) -> Path:
+    """``runs/NAME.sqlite``; what is no letter, digit, dot or dash of a name is no path either."""
+    return Path("runs") / f"{re.sub(r'[^\w.-]+', '-', name).strip('.')}.sqlite"
 
 
 def _tournament(name: str, changes: dict[str, Any]) -> Tournament:

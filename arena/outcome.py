@@ -61,7 +61,7 @@ def agent_arrays(agent: Any) -> Arrays:
 def pack(arrays: Mapping[str, NDArray[Any]]) -> bytes:
     """The bytes of an ``.npz`` file; the same for the same arrays.
 
-    ``numpy.savez_compressed`` does this at zlib's level 6, three times slower and 5% smaller.
+    ``numpy.savez_compressed`` takes twice as long, at zlib's level 6, for 4% less.
     """
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:

@@ -155,6 +155,12 @@ def test_another_tournament_s_file_is_not_overwritten(race: str, capsys: pytest.
     assert Path("runs/race.sqlite").read_bytes() == before
 
 
+def test_a_tournament_s_name_is_no_path(race: str) -> None:
+    Path("up.toml").write_text(RACE.replace('"race"', '"../up/../../race 1"'))
+    assert main(["run", "up.toml", "--jobs", "1", "--replicates", "1"]) == 0
+    assert [path.name for path in Path("runs").iterdir()] == ["-up-..-..-race-1.sqlite"]
+
+
 def test_help_names_the_commands_and_is_no_error(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     text = capsys.readouterr().out

@@ -114,7 +114,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _default_file(name: str) -> Path:
     """``runs/NAME.sqlite``; what is no letter, digit, dot or dash of a name is no path either."""
-    return Path("runs") / f"{re.sub(r'[^\w.-]+', '-', name).strip('.')}.sqlite"
+    safe = re.sub(r"[^\w.-]+", "-", name).strip(".")
+    return Path("runs") / f"{safe}.sqlite"
 
 
 def _tournament(name: str, changes: dict[str, Any]) -> Tournament:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from arena.loops import evaluate, listener, train
-from arena.outcome import Outcome, agent_arrays, pack, score
+from arena.outcome import Outcome, complete
 from arena.tournament import Conditions, Run
 from envs.compilation import compile_loop
 from envs.reachable import Reached
@@ -31,25 +31,9 @@ def race(conditions: Conditions, run: Run) -> Outcome:
     training, evaluation = _arguments(conditions, agent, run)
     compile_loop(train, *training)(*training)
     compile_loop(evaluate, *evaluation)(*evaluation)
-    lengths, (test_lengths, test_reached) = training[-1], evaluation[-2:]
-    accuracy, mean_length = score(test_lengths, test_reached)
-    arrays = {
-        **agent_arrays(agent),
-        "lengths": lengths,
-        "test_lengths": test_lengths,
-        "test_reached": test_reached,
-    }
-    return Outcome(
-        run.entrant.name,
-        run.replicate,
-        NAME,
-        "finished",
-        accuracy,
-        mean_length,
-        int(lengths.sum()),
-        time.perf_counter() - began,
-        pack(arrays),
-    )
+    seconds = time.perf_counter() - began
+    test_lengths, test_reached = evaluation[-2:]
+    return complete(run, NAME, agent, training[-1], test_lengths, test_reached, seconds)
 
 
 def prepare(conditions: Conditions, run: Run) -> None:

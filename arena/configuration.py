@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from arena.tournament import Evaluation, Tournament, Training
 from envs import Hill
 from envs.checks import choice
 
-_KEYS = ("name", "reading", "seed", "replicates", "hill", "training", "evaluation", "entrants")
+_KEYS = tuple(field.name for field in fields(Tournament))
 _ENTRANT_KEYS = ("name", "agent", "parameters", "sweep")
 
 
@@ -67,9 +68,9 @@ def from_dict(content: Mapping[str, Any]) -> Tournament:
 def _build(name: str, kind: type[Any], table: Any) -> Any:
     if not isinstance(table, Mapping):
         raise TypeError(f"{name} must be a table, got {table!r}")
-    fields = getattr(kind, "_fields", None) or tuple(kind.__dataclass_fields__)
+    known = getattr(kind, "_fields", None) or tuple(kind.__dataclass_fields__)
     for key in table:
-        choice(f"key of {name}", key, fields)
+        choice(f"key of {name}", key, known)
     return kind(**table)
 
 

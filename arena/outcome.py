@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.tournament import Run
+
 Arrays = dict[str, NDArray[Any]]
 
 
@@ -48,7 +50,47 @@ def score(lengths: NDArray[np.int64], reached: NDArray[np.bool_]) -> tuple[float
     return accuracy, float(successful.mean()) if len(successful) else math.nan
 
 
-def agent_arrays(agent: Any) -> Arrays:
+def complete(
+    run: Run,
+    driver: str,
+    agent: Any,
+    lengths: NDArray[np.int64],
+    test_lengths: NDArray[np.int64],
+    test_reached: NDArray[np.bool_],
+    seconds: float,
+) -> Outcome:
+    """The outcome of a run that came to its end.
+
+    Raises:
+        ValueError: when an array of the agent has NaN: its scores would mean nothing.
+    """
+    accuracy, mean_length = score(test_lengths, test_reached)
+    arrays = _agent_arrays(agent)
+    for name, array in arrays.items():
+        if np.issubdtype(array.dtype, np.inexact) and np.isnan(array).any():
+            raise ValueError(
+                f"{name} must be free of NaN after training, got {np.isnan(array).sum()} of them"
+            )
+    arrays |= {"lengths": lengths, "test_lengths": test_lengths, "test_reached": test_reached}
+    return Outcome(
+        run.entrant.name,
+        run.replicate,
+        driver,
+        "finished",
+        accuracy,
+        mean_length,
+        int(lengths.sum()),
+        seconds,
+        pack(arrays),
+    )
+
+
+def failed(run: Run, driver: str, error: str, seconds: float = 0.0) -> Outcome:
+    """The outcome of a run that did not finish, and why."""
+    return Outcome(run.entrant.name, run.replicate, driver, "failed", seconds=seconds, error=error)
+
+
+def _agent_arrays(agent: Any) -> Arrays:
     """The arrays that are fields or attributes of the agent, by name."""
     fields = agent._asdict() if hasattr(agent, "_asdict") else getattr(agent, "__dict__", {})
     return {

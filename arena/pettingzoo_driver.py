@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from arena.loops import listener
-from arena.outcome import Outcome, agent_arrays, pack, score
+from arena.outcome import Outcome, complete, failed
 from arena.tournament import Conditions, Run
 from envs.checks import integer
 from envs.streams import stream
@@ -58,7 +58,9 @@ class _Car:
         if not self.error:
             try:
                 call(*arguments)
-            except Exception:
+            except KeyboardInterrupt:
+                raise
+            except BaseException:  # sys.exit, too
                 self.error = traceback.format_exc()
                 self.action = _NO_THRUST
 
@@ -78,27 +80,12 @@ class _Car:
         self.action = self._checked(self.agent.greedy(observation))
 
     def outcome(self, seconds: float) -> Outcome:
-        name, replicate = self.run.entrant.name, self.run.replicate
-        if self.error:
-            return Outcome(name, replicate, NAME, "failed", seconds=seconds, error=self.error)
-        accuracy, mean_length = score(self.test_lengths, self.test_reached)
-        arrays = {
-            **agent_arrays(self.agent),
-            "lengths": self.lengths,
-            "test_lengths": self.test_lengths,
-            "test_reached": self.test_reached,
-        }
-        return Outcome(
-            name,
-            replicate,
-            NAME,
-            "finished",
-            accuracy,
-            mean_length,
-            int(self.lengths.sum()),
-            seconds,
-            pack(arrays),
-        )
+        self.attempt(self.finish, seconds)
+        return failed(self.run, NAME, self.error, seconds) if self.error else self.finished
+
+    def finish(self, seconds: float) -> None:
+        lengths = (self.lengths, self.test_lengths, self.test_reached)
+        self.finished = complete(self.run, NAME, self.agent, *lengths, seconds)
 
     def _checked(self, action: Any) -> int:
         found = integer("action", action, 0)

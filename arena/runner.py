@@ -3,12 +3,12 @@
 import logging
 import math
 import traceback
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
-
 from arena import compiled_driver, pettingzoo_driver
-from arena.outcome import Outcome
+from arena.claims import Limits
+from arena.outcome import Outcome, failed
+from arena.pool import Task, imap, survive
 from arena.results import Results
 from arena.store import Store
 from arena.tournament import Conditions, Run, Tournament
@@ -53,17 +53,21 @@ def run(
         raise ValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
     path = None if out is None else Path(out)
     config = tournament.to_dict()
+    limits = Limits(tournament.time_limit, tournament.memory_limit)
     resuming = path is not None and path.exists()
     store = Store.resume(path, config) if path is not None and resuming else None
     done = store.finished() if store else set()
     pending = [r for r in tournament.runs if (r.entrant.name, r.replicate) not in done]
     try:
-        tasks = _plan(tournament.conditions, pending, n_jobs, driver)
+        travellers, lost = _travel(pending)
+        tasks = _plan(tournament.conditions, travellers, n_jobs, driver)
         store = store or Store.create(path, config)
+        for outcome in lost:
+            store.add(outcome)
         report = progress or (lambda _finished, _total: None)
-        finished = len(tournament.runs) - len(pending)
+        finished = len(tournament.runs) - len(travellers)
         report(finished, len(tournament.runs))
-        for outcomes in _parallel(n_jobs, _work, tasks):
+        for outcomes in survive(n_jobs, _work, tasks, limits):
             for outcome in outcomes:
                 store.add(outcome)
                 finished += 1
@@ -75,7 +79,18 @@ def run(
     return Results(store)
 
 
-Task = tuple[str, Conditions, list[Run]]
+def _travel(runs: list[Run]) -> tuple[list[Run], list[Outcome]]:
+    """The runs that can be sent to a worker, and the failures of those that cannot."""
+    import cloudpickle
+
+    reasons: dict[str, str] = {}
+    for entrant in {run.entrant.name: run.entrant for run in runs}.values():
+        try:
+            cloudpickle.dumps(entrant)
+        except Exception as error:  # whatever its classes raise
+            reasons[entrant.name] = f"it cannot be sent to a worker: {type(error).__name__}: {error}"
+    lost = [failed(run, "none", reasons[run.entrant.name]) for run in runs if run.entrant.name in reasons]
+    return [run for run in runs if run.entrant.name not in reasons], lost
 
 
 def _plan(conditions: Conditions, runs: list[Run], n_jobs: int, driver: str) -> list[Task]:
@@ -113,25 +128,16 @@ def _compile(conditions: Conditions, runs: Iterable[Run], n_jobs: int) -> dict[s
         if not hasattr(one.entrant.agent, "_fields"):
             reasons[one.entrant.name] = "it is no NamedTuple"
             continue
-        kind = compiled_driver.fingerprint(conditions, one)
+        try:
+            kind = compiled_driver.fingerprint(conditions, one)
+        except Exception as error:  # the agent cannot even be created; its run will say so
+            reasons[one.entrant.name] = f"{type(error).__name__}: {error}"
+            continue
         kinds.setdefault(kind, one)
         kind_of[one.entrant.name] = kind
     tasks = [(kind, conditions, one) for kind, one in kinds.items()]
-    failed = dict(answer for answer in _parallel(n_jobs, _prepare, tasks) if answer[1])
+    failed = dict(answer for answer in imap(n_jobs, _prepare, tasks) if answer[1])
     return reasons | {name: failed[kind] for name, kind in kind_of.items() if kind in failed}
-
-
-def _parallel(n_jobs: int, function: Callable[..., Any], tasks: list[Any]) -> Iterator[Any]:
-    """The results as they come in, where joblib's backend can do that, else at the end."""
-    import joblib
-
-    if not tasks:
-        return
-    try:
-        parallel = joblib.Parallel(n_jobs=n_jobs, return_as="generator_unordered", max_nbytes=None)
-    except ValueError:
-        parallel = joblib.Parallel(n_jobs=n_jobs, max_nbytes=None)
-    yield from parallel(joblib.delayed(function)(*task) for task in tasks)
 
 
 def _prepare(kind: str, conditions: Conditions, one: Run) -> tuple[str, str]:
@@ -150,6 +156,7 @@ def _work(driver: str, conditions: Conditions, runs: list[Run]) -> list[Outcome]
     (only,) = runs
     try:
         return [compiled_driver.race(conditions, only)]
-    except Exception:
-        error = traceback.format_exc()
-        return [Outcome(only.entrant.name, only.replicate, driver, "failed", error=error)]
+    except KeyboardInterrupt:
+        raise
+    except BaseException:  # sys.exit, too
+        return [failed(only, driver, traceback.format_exc())]

@@ -30,6 +30,10 @@ CREATE TABLE arrays (
 """
 
 
+# Changing these changes no result, so a tournament may be continued with others.
+_FREE = {"time_limit", "memory_limit"}
+
+
 class ResultsError(ValueError):
     """A results file cannot be used; the message is one sentence that names it."""
 
@@ -200,7 +204,7 @@ def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     """The first thing in which two tournaments differ, in words; empty if they are the same."""
     ours = json.loads(json.dumps(ours))
     for key in {**ours, **theirs}:
-        if theirs.get(key) != ours.get(key):
+        if key not in _FREE and theirs.get(key) != ours.get(key):
             if isinstance(ours.get(key), (str, int)):
                 return f"its {key} is {theirs.get(key)!r}, not {ours[key]!r}"
             return f"its {key} differ"

@@ -1,5 +1,6 @@
 """What is raced: the frozen, validated description of a tournament."""
 
+import logging
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache
@@ -11,8 +12,11 @@ from numpy.typing import NDArray
 from arena.entrant import Entrant, plain
 from arena.readings import READINGS
 from envs import Hill
-from envs.checks import choice, instance, integer
+from envs.checks import choice, instance, integer, number
 from envs.streams import stream
+
+
+_log = logging.getLogger("arena")
 
 
 def _integers(owner: Any, prefix: str, **least: int) -> None:
@@ -104,6 +108,9 @@ class Tournament:
         reading: how to read the paper's protocol where its text leaves it open; see
             ``arena.readings``. A reading other than ``"literal"`` changes the hill and sets those
             parameters of the entrants that were not given.
+        time_limit: seconds that a run may take in its worker, the worker's start included; None is
+            no limit. A run that breaks a limit fails, the others go on.
+        memory_limit: mebibytes that a worker may use; None is no limit.
 
     Raises:
         TypeError, ValueError: when an argument breaks its rule, or an entrant cannot be made.
@@ -117,6 +124,8 @@ class Tournament:
     seed: int = 0
     name: str = "tournament"
     reading: str = "literal"
+    time_limit: float | None = None
+    memory_limit: float | None = None
 
     def __post_init__(self) -> None:
         reading = READINGS[choice("reading", self.reading, READINGS)]
@@ -125,6 +134,9 @@ class Tournament:
         if not isinstance(self.name, str) or not self.name.strip() or not self.name.isprintable():
             raise ValueError(f"name must be a printable text that is not empty, got {self.name!r}")
         _integers(self, "", replicates=1, seed=0)
+        for limit in ("time_limit", "memory_limit"):
+            if getattr(self, limit) is not None:
+                object.__setattr__(self, limit, number(limit, getattr(self, limit), 0, above=True))
         hill = self.hill._replace(**reading.hill)
         object.__setattr__(self, "hill", hill)
         entrants = tuple(map(reading.read, _entrants(self.entrants)))
@@ -135,6 +147,8 @@ class Tournament:
             except (TypeError, ValueError) as error:
                 problem = TypeError if isinstance(error, TypeError) else ValueError
                 raise problem(f"entrant {entrant.name!r}: {error}") from error
+            except Exception:  # no bad parameter but a bad agent: its runs will fail and tell
+                _log.debug("entrant %r cannot be created", entrant.name, exc_info=True)
 
     @cached_property
     def conditions(self) -> Conditions:
@@ -156,6 +170,8 @@ class Tournament:
             "hill": plain(self.hill),
             "training": asdict(self.training),
             "evaluation": asdict(self.evaluation),
+            "time_limit": self.time_limit,
+            "memory_limit": self.memory_limit,
             "entrants": [entrant.to_dict() for entrant in self.entrants],
         }
 

@@ -6,6 +6,7 @@ neighbours are not blamed.
 """
 
 import os
+import re
 import tempfile
 from collections.abc import Callable, Iterator
 from concurrent.futures.process import BrokenProcessPool
@@ -125,8 +126,8 @@ def _suspects(folder: Path) -> dict[str, str]:
 
 def _exit_codes(death: BrokenProcessPool) -> str:
     """What the message of joblib says of the exit code, such as ``SIGSEGV(-11)``."""
-    _, found, codes = str(death).partition("The exit codes of the workers are ")
-    return f"exit code {codes.strip(' {}').rstrip('.}')}" if found else str(death).splitlines()[0]
+    found = re.search(r"exit codes of the workers are \{(.*?)\}", str(death))
+    return f"exit code {found[1]}" if found else str(death).splitlines()[0]
 
 
 def _needs_processes() -> None:

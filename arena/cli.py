@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import sys
 from collections.abc import Sequence
 from enum import StrEnum
@@ -28,6 +29,10 @@ app = typer.Typer(
 BAD_INPUT = 2
 SOME_FAILED = 1
 INTERRUPTED = 130
+
+
+class _InterruptedError(Exception):
+    """Ctrl-C while runs were written to a file, the only argument."""
 
 
 class Driver(StrEnum):
@@ -58,6 +63,7 @@ def run(
         typer.Option(help="How to read the paper's protocol; see docs/readings.md.", metavar="NAME"),
     ] = None,
     driver: Annotated[Driver, typer.Option(help="What steps the cars.")] = Driver.AUTO,
+    strict: Annotated[bool, typer.Option(help="Exit with 1 if an entrant failed.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Run a tournament, keep its results and print its tables."""
@@ -69,11 +75,11 @@ def run(
     try:
         results = _run(chosen, out, jobs, driver.value)
     except KeyboardInterrupt:
-        _say(f"interrupted; what was finished is in {out}; the same command continues")
-        raise typer.Exit(INTERRUPTED) from None
+        raise _InterruptedError(out) from None
     with results:
         _show(results, as_json=as_json)
-        if any(one["status"] != "finished" for one in results.runs):
+        failures = sum(one["status"] != "finished" for one in results.runs)
+        if failures and (strict or failures == len(results.runs)):
             raise typer.Exit(SOME_FAILED)
 
 
@@ -87,6 +93,31 @@ def show(
         _show(results, as_json=as_json)
 
 
+@app.command()
+def digest(file: Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")]) -> None:
+    """Print a hash of everything in a results file but timings."""
+    from arena.digest import digest as digest_of
+
+    with load(file) as results:
+        print(digest_of(results))
+
+
+@app.command()
+def verify(
+    file: Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")],
+    runs: Annotated[int, typer.Option(help="How many runs to repeat.", metavar="K")] = 4,
+) -> None:
+    """Run a sample again, with the other driver and other workers; exit with 1 if a bit differs."""
+    from arena.verification import verify as differences
+
+    with load(file) as results:
+        found = next(differences(results, runs), None)
+    if found:
+        print(found)
+        raise typer.Exit(SOME_FAILED)
+    print("no difference")
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code is 0, 1 (an entrant failed), 2 (bad input) or 130."""
     command = typer.main.get_command(app)
@@ -96,6 +127,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )
     except typer.Exit as stop:
         return stop.exit_code
+    except _InterruptedError as stop:
+        again = shlex.join(["arena", *(sys.argv[1:] if arguments is None else arguments)])
+        _say(f"interrupted; what was finished is in {stop}; to continue: {again}")
+        return INTERRUPTED
     except (typer.Abort, KeyboardInterrupt):
         return INTERRUPTED
     except BrokenPipeError:  # the reader, such as head, has seen enough

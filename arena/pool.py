@@ -8,8 +8,11 @@ neighbours are not blamed.
 import os
 import re
 import tempfile
+import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures.process import BrokenProcessPool
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +47,29 @@ def imap(
         parallel = joblib.Parallel(return_as="generator_unordered", max_nbytes=None, **options)
     except ValueError:
         parallel = joblib.Parallel(max_nbytes=None, **options)
-    yield from parallel(joblib.delayed(function)(*task) for task in tasks)
+    yield from parallel(joblib.delayed(_serve)(os.getpid(), function, task) for task in tasks)
+
+
+def _serve(parent: int, function: Callable[..., Any], task: tuple[Any, ...]) -> Any:
+    """In a worker: call ``function``, and do not outlive the parent."""
+    if os.getpid() != parent:
+        _leave_with(parent)
+    return function(*task)
+
+
+@cache
+def _leave_with(parent: int) -> None:
+    """End this process soon after the parent, which may be killed without a word."""
+    import psutil
+
+    born_of = os.getppid()  # changes when the parent dies, but not on Windows
+
+    def watch() -> None:
+        while os.getppid() == born_of and psutil.pid_exists(parent):
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Iterator[list[Outcome]]:

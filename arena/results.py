@@ -50,7 +50,7 @@ class Results:
                 "agent": entrants[row["entrant"]]["agent"],
                 "parameters": entrants[row["entrant"]]["parameters"],
                 "replicate": row["replicate"],
-                **{name: _none(row[name]) for name in SCORES},
+                **plain_scores(row),
                 **({"error": row["error"]} if row["error"] else {}),
             }
             for row in sorted(self._store.rows(), key=lambda row: (order[row["entrant"]], row["replicate"]))
@@ -116,6 +116,11 @@ def load(path: str | Path) -> Results:
         arena.store.ResultsError: a ValueError; when there is no such file or it is something else.
     """
     return Results(Store.read(Path(path)))
+
+
+def plain_scores(row: Mapping[str, Any]) -> dict[str, Any]:
+    """The scores of a run, NaN as None."""
+    return {name: _none(row[name]) for name in SCORES}
 
 
 def _none(value: Any) -> Any:

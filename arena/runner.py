@@ -5,6 +5,7 @@ import math
 import traceback
 from collections.abc import Callable, Iterable
 from pathlib import Path
+
 from arena import compiled_driver, pettingzoo_driver
 from arena.claims import Limits
 from arena.outcome import Outcome, failed
@@ -67,7 +68,7 @@ def run(
         report = progress or (lambda _finished, _total: None)
         finished = len(tournament.runs) - len(travellers)
         report(finished, len(tournament.runs))
-        for outcomes in survive(n_jobs, _work, tasks, limits):
+        for outcomes in survive(n_jobs, work, tasks, limits):
             for outcome in outcomes:
                 store.add(outcome)
                 finished += 1
@@ -76,6 +77,7 @@ def run(
         if store:
             store.close()
         raise
+    store.release()
     return Results(store)
 
 
@@ -149,7 +151,7 @@ def _prepare(kind: str, conditions: Conditions, one: Run) -> tuple[str, str]:
     return kind, ""
 
 
-def _work(driver: str, conditions: Conditions, runs: list[Run]) -> list[Outcome]:
+def work(driver: str, conditions: Conditions, runs: list[Run]) -> list[Outcome]:
     """In a worker: drive the runs; what fails is told, not raised."""
     if driver == pettingzoo_driver.NAME:
         return pettingzoo_driver.race(conditions, runs)

@@ -13,6 +13,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from filelock import FileLock, Timeout
+
 from arena.outcome import Arrays, Outcome, unpack
 
 APPLICATION_ID = 0x4D434152  # "MCAR"
@@ -31,7 +33,7 @@ CREATE TABLE arrays (
 
 
 # Changing these changes no result, so a tournament may be continued with others.
-_FREE = {"time_limit", "memory_limit"}
+FREE = {"time_limit", "memory_limit"}
 
 
 class ResultsError(ValueError):
@@ -44,9 +46,12 @@ class Store:
     Use ``Store.create``, ``Store.resume`` or ``Store.read``.
     """
 
-    def __init__(self, connection: sqlite3.Connection, path: Path | None) -> None:
+    def __init__(
+        self, connection: sqlite3.Connection, path: Path | None, lock: FileLock | None = None
+    ) -> None:
         self.path = path
         self._connection = connection
+        self._lock = lock
 
     @classmethod
     def create(cls, path: Path | None, config: dict[str, Any]) -> "Store":
@@ -55,9 +60,11 @@ class Store:
         Raises:
             ResultsError: when the file cannot be made.
         """
+        lock = None
         try:
             if path is not None:
                 path.parent.mkdir(parents=True, exist_ok=True)
+                lock = _locked(path)
             connection = sqlite3.connect(path or "", isolation_level=None)
             connection.execute("BEGIN")
             for statement in _SCHEMA.split(";"):
@@ -69,8 +76,9 @@ class Store:
             connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
             connection.execute("COMMIT")
         except (OSError, sqlite3.Error) as error:
+            _unlock(lock)
             raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
-        return cls(connection, path)
+        return cls(connection, path, lock)
 
     @classmethod
     def resume(cls, path: Path, config: dict[str, Any]) -> "Store":
@@ -80,6 +88,11 @@ class Store:
             ResultsError: when it is no results file, or that of another tournament.
         """
         store = cls._open(path, "rw")
+        try:
+            store._lock = _locked(path)  # noqa: SLF001 (its own)
+        except ResultsError:
+            store.close()
+            raise
         difference = _difference(store.config, config)
         if difference:
             store.close()
@@ -182,10 +195,38 @@ class Store:
     def close(self) -> None:
         """Close the file; a temporary one is gone."""
         self._connection.close()
+        self.release()
+
+    def release(self) -> None:
+        """Let others write the file: nothing more will be added."""
+        _unlock(self._lock)
+        self._lock = None
 
     def _told(self, key: str) -> Any:
         query = "SELECT value FROM tournament WHERE key = ?"
         return json.loads(self._connection.execute(query, (key,)).fetchone()[0])
+
+
+def _locked(path: Path) -> FileLock:
+    """The right to write ``path``, which a process loses when it ends, however it ends.
+
+    Raises:
+        ResultsError: when another process has it, or there can be no lock beside the file.
+    """
+    lock = FileLock(f"{path}.lock", timeout=0)
+    try:
+        lock.acquire()
+    except Timeout:
+        raise ResultsError(f"another process is writing {path}; wait for it, or name another file") from None
+    except OSError as error:
+        raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
+    return lock
+
+
+def _unlock(lock: FileLock | None) -> None:
+    if lock is not None:
+        Path(lock.lock_file).unlink(missing_ok=True)
+        lock.release()
 
 
 def versions() -> dict[str, str]:
@@ -204,7 +245,7 @@ def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     """The first thing in which two tournaments differ, in words; empty if they are the same."""
     ours = json.loads(json.dumps(ours))
     for key in {**ours, **theirs}:
-        if key not in _FREE and theirs.get(key) != ours.get(key):
+        if key not in FREE and theirs.get(key) != ours.get(key):
             if isinstance(ours.get(key), (str, int)):
                 return f"its {key} is {theirs.get(key)!r}, not {ours[key]!r}"
             return f"its {key} differ"

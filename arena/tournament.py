@@ -15,7 +15,6 @@ from envs import Hill
 from envs.checks import choice, instance, integer, number
 from envs.streams import stream
 
-
 _log = logging.getLogger("arena")
 
 

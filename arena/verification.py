@@ -1,0 +1,75 @@
+"""Proof of determinism: run a sample again, otherwise, and compare the bits."""
+
+import random
+from collections.abc import Iterator
+from dataclasses import asdict
+
+from arena import compiled_driver, pettingzoo_driver
+from arena.claims import Limits
+from arena.configuration import from_dict
+from arena.digest import run_digest
+from arena.outcome import Outcome, unpack
+from arena.pool import survive
+from arena.results import Results, plain_scores
+from arena.runner import work
+from envs.checks import integer
+
+_OTHER = {compiled_driver.NAME: pettingzoo_driver.NAME, pettingzoo_driver.NAME: compiled_driver.NAME}
+
+
+def verify(results: Results, runs: int = 4) -> Iterator[str]:
+    """Run a sample of the finished runs again and tell each difference, in words.
+
+    Each of them is run in the other driver in this process, and in its own driver in two threads.
+    The results file runs no code: the agents are found by their names among the installed ones.
+
+    Args:
+        results: what to verify.
+        runs: size of the sample.
+
+    Raises:
+        ValueError: when an agent is not installed, or no run is finished.
+    """
+    import joblib
+
+    tournament = from_dict(results.config)
+    stored = {(run["entrant"], run["replicate"]): run for run in results.runs if run["status"] == "finished"}
+    if not stored:
+        raise ValueError(f"{results.path} has no finished run that could be verified")
+    sample = random.Random(0).sample(sorted(stored), min(integer("runs", runs, 1), len(stored)))  # noqa: S311
+    chosen = [run for run in tournament.runs if (run.entrant.name, run.replicate) in sample]
+    for backend, n_jobs, other in (("loky", 1, True), ("threading", 2, False)):
+        tasks = []
+        for run in chosen:
+            driver = stored[run.entrant.name, run.replicate]["driver"]
+            tasks.append((_OTHER[driver] if other else driver, tournament.conditions, [run]))
+        with joblib.parallel_config(backend=backend):
+            for outcomes in survive(n_jobs, work, tasks, Limits()):
+                for outcome in outcomes:
+                    before = stored[outcome.entrant, outcome.replicate]
+                    difference = _difference(results, before, outcome)
+                    if difference:
+                        yield (
+                            f"replicate {outcome.replicate} of {outcome.entrant!r} differs in {difference} "
+                            f"({outcome.driver} driver, {backend}, {n_jobs} workers)"
+                        )
+
+
+def _difference(results: Results, stored: dict[str, object], outcome: Outcome) -> str:
+    """What differs first; empty if nothing does."""
+    if outcome.error:
+        return f"its end: {outcome.error.strip().splitlines()[-1]}"
+    scores = plain_scores(asdict(outcome))
+    before = results.arrays(outcome.entrant, outcome.replicate)
+    after = unpack(outcome.arrays)
+    if run_digest({**stored, **scores}, after) == run_digest(stored, before):
+        return ""
+    for name in ("status", "accuracy", "mean_length", "iterations"):
+        if scores[name] != stored[name]:
+            return f"{name}: {stored[name]} before, {scores[name]} now"
+    names = sorted(before.keys() | after.keys())
+    return next(
+        name
+        for name in names
+        if name not in before or name not in after or before[name].tobytes() != after[name].tobytes()
+    )

@@ -1,0 +1,156 @@
+"""Nothing lost: killed at any moment and continued, the bits are those of an uninterrupted run."""
+
+import json
+import random
+import re
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from arena import load
+from arena.cli import main
+
+RACE = """
+name = "race"
+replicates = 8
+[training]
+episodes = 1500
+max_steps = 1000
+[evaluation]
+episodes = 50
+[[entrants]]
+agent = "sarsa"
+sweep = { bins = [[8, 8], [10, 10], [12, 12]] }
+[[entrants]]
+agent = "q-learning"
+parameters = { bins = 9 }
+"""
+POSIX = pytest.mark.skipif(sys.platform == "win32", reason="sends POSIX signals")
+
+
+@pytest.fixture
+def race(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The results file of a race.toml in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("race.toml").write_text(RACE)
+    return tmp_path / "runs" / "race.sqlite"
+
+
+def start(*options: str) -> subprocess.Popen[bytes]:
+    """The command in the background; what it says of errors goes to the file ``said``."""
+    command = [sys.executable, "-m", "arena", "run", "race.toml", "--jobs", "2", *options]
+    with Path("said").open("wb") as said:
+        return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said)
+
+
+def digest(file: Path) -> str:
+    command = [sys.executable, "-m", "arena", "digest", str(file)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+@POSIX
+@pytest.mark.slow
+def test_killed_at_twenty_random_moments_and_continued_the_digest_is_that_of_an_uninterrupted_run(
+    race: Path,
+) -> None:
+    process = start("--out", "whole.sqlite")
+    began = time.monotonic()
+    assert process.wait(120) == 0
+    duration = time.monotonic() - began
+    expected = digest(Path("whole.sqlite"))
+    rng = random.Random(4)  # noqa: S311
+    kills = 0
+    while kills < 20:
+        shutil.rmtree(race.parent, ignore_errors=True)
+        finished = False
+        while not finished:
+            process = start()
+            try:
+                process.wait(rng.uniform(0.2, 1.1) * duration)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                kills += 1
+            finished = process.wait(60) == 0
+            assert process.returncode in (0, -signal.SIGKILL), Path("said").read_text()
+        assert digest(race) == expected
+
+
+@POSIX
+def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
+    process = start("--seed", "3")
+    while not race.exists():
+        time.sleep(0.05)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 130
+    told = Path("said").read_text()
+    line = next(line for line in told.splitlines() if line.startswith("arena:"))
+    assert line == (
+        f"arena: interrupted; what was finished is in {Path('runs/race.sqlite')}; "
+        "to continue: arena run race.toml --jobs 2 --seed 3"
+    )
+    assert "Traceback" not in told
+    process = start("--seed", "3")
+    assert process.wait(120) == 0
+
+
+def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
+    process = start()
+    while not race.exists():
+        time.sleep(0.05)
+    second = start()
+    assert second.wait(60) == 2
+    assert "another process is writing runs" in Path("said").read_text()
+    assert process.wait(120) == 0
+    assert not list(race.parent.glob("*.lock"))
+
+
+def test_digests_ignore_what_may_differ_and_nothing_else(
+    race: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, driver in (("a", "compiled"), ("b", "pettingzoo")):
+        small = ["--replicates", "1", "--jobs", "1", "--driver", driver, "--out", f"{name}.sqlite"]
+        text = re.sub("episodes = 1500", "episodes = 3", RACE)
+        Path("race.toml").write_text(text)
+        assert main(["run", "race.toml", *small]) == 0
+    assert digest(Path("a.sqlite")) == digest(Path("b.sqlite"))
+    before = digest(Path("a.sqlite"))
+    capsys.readouterr()
+    for change in (
+        "UPDATE runs SET iterations = iterations + 1 WHERE entrant = 'q-learning'",
+        "UPDATE runs SET accuracy = 3.0 WHERE entrant = 'q-learning'",
+        "UPDATE arrays SET npz = (SELECT npz FROM arrays WHERE entrant = 'q-learning')",
+        "DELETE FROM runs WHERE entrant = 'q-learning'",
+    ):
+        shutil.copy("a.sqlite", "c.sqlite")
+        connection = sqlite3.connect("c.sqlite")
+        connection.execute(change)
+        connection.commit()
+        connection.close()
+        assert digest(Path("c.sqlite")) != before
+        if change.startswith("UPDATE"):
+            assert main(["verify", "c.sqlite"]) == 1
+            assert re.match(r"replicate 0 of '.*' differs in \w+", capsys.readouterr().out)
+    assert main(["verify", "a.sqlite", "--runs", "2"]) == 0
+    assert capsys.readouterr().out == "no difference\n"
+
+
+def test_failures_are_told_by_the_exit_code_if_asked_or_if_nothing_finished(
+    race: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    endless = RACE.replace("episodes = 1500", "episodes = 1_000_000").partition("[[entrants]]")[0]
+    Path("race.toml").write_text("time_limit = 2.0\n" + endless + '[[entrants]]\nagent = "sarsa"\n')
+    arguments = ["run", "race.toml", "--replicates", "1", "--jobs", "1"]
+    assert main(arguments) == 1
+    assert (
+        "sarsa replicate 0 failed: the worker died: the time limit of 2 s is over" in capsys.readouterr().out
+    )
+    with load(race) as results:
+        assert json.dumps(results.to_dict())
+        assert {one["status"] for one in results.runs} == {"failed"}

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from arena.checkpoint import checkpoint_of
 from arena.loops import evaluate, listener, train
 from arena.outcome import Outcome, complete
 from arena.tournament import Conditions, Run
@@ -17,6 +18,8 @@ from envs.reachable import Reached
 from envs.streams import stream
 
 NAME = "compiled"
+_PIECE = 1000  # episodes at first between two looks at the clock
+_SHORT = 0.5  # seconds; a shorter piece is doubled, a longer one halved
 
 
 def race(conditions: Conditions, run: Run) -> Outcome:
@@ -29,11 +32,29 @@ def race(conditions: Conditions, run: Run) -> Outcome:
     began = time.perf_counter()
     agent = run.entrant.create(conditions.hill, stream(conditions.seed, "create", run.identity))
     training, evaluation = _arguments(conditions, agent, run)
-    compile_loop(train, *training)(*training)
+    _train(conditions, run, training)
     compile_loop(evaluate, *evaluation)(*evaluation)
     seconds = time.perf_counter() - began
     test_lengths, test_reached = evaluation[-2:]
     return complete(run, NAME, agent, training[-1], test_lengths, test_reached, seconds)
+
+
+def _train(conditions: Conditions, run: Run, arguments: tuple[Any, ...]) -> None:
+    """Train in one go, or piece by piece with a checkpoint now and then."""
+    kernel = compile_loop(train, *arguments)
+    (hill, agent, listening, n_actions, done, episodes), rest = arguments[:6], arguments[6:]
+    checkpoint = checkpoint_of(conditions, run, agent, *rest[2:])
+    done = checkpoint.restore()
+    piece = _PIECE if checkpoint.path else episodes
+    saved = time.monotonic()
+    while done < episodes:
+        began, last = time.monotonic(), min(done + piece, episodes)
+        kernel(hill, agent, listening, n_actions, done, last, *rest)
+        now, done = time.monotonic(), last
+        if now - saved >= conditions.checkpoint_seconds and done < episodes:
+            checkpoint.save(done)
+            saved = now
+        piece = max(1, piece * 2 if now - began < _SHORT else piece // 2)
 
 
 def prepare(conditions: Conditions, run: Run) -> None:
@@ -65,6 +86,8 @@ def _arguments(conditions: Conditions, agent: Any, run: Run) -> tuple[tuple[Any,
         agent,
         listener(agent),
         hill.n_actions,
+        0,
+        training.episodes,
         training.episodes,
         training.max_steps,
         stream(conditions.seed, "start", run.identity),

@@ -31,6 +31,8 @@ def train(
     agent: Any,
     listener: Any,
     n_actions: int,
+    first: int,
+    last: int,
     episodes: int,
     max_steps: int,
     starts: np.random.Generator,
@@ -44,7 +46,9 @@ def train(
         agent: what drives and learns; changed in place.
         listener: what hears when an episode begins, see ``listener``.
         n_actions: the actions are 0, 1, ..., n_actions - 1.
-        episodes: number N_E of episodes.
+        first: the episode to begin with.
+        last: the episode to end before.
+        episodes: number N_E of all episodes.
         max_steps: limit N_LE of an episode.
         starts: the stream that starts come from.
         rng: the stream of the agent's choices.
@@ -53,7 +57,7 @@ def train(
     Raises:
         ValueError: when the agent chooses an action that there is not.
     """
-    for episode in range(episodes):
+    for episode in range(first, last):
         progress = episode / episodes
         state = hill.reset(starts)
         observation = hill.observe(state)

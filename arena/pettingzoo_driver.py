@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from arena.checkpoint import checkpoint_of
 from arena.loops import listener
 from arena.outcome import Outcome, complete, failed
 from arena.tournament import Conditions, Run
@@ -27,7 +28,11 @@ def race(conditions: Conditions, runs: Iterable[Run]) -> list[Outcome]:
     """
     began = time.perf_counter()
     cars = {run.identity: _Car(conditions, run) for run in runs}
-    _train(conditions, cars)
+    together: dict[int, dict[str, _Car]] = {}
+    for name, car in cars.items():
+        together.setdefault(car.done, {})[name] = car
+    for group in together.values():  # of cars that are at the same episode
+        _train(conditions, group)
     _evaluate(conditions, cars)
     seconds = (time.perf_counter() - began) / len(cars)
     return [car.outcome(seconds) for car in cars.values()]
@@ -46,12 +51,16 @@ class _Car:
         self.lengths = np.zeros(conditions.training.episodes, np.int64)
         self.test_lengths = np.zeros(conditions.evaluation.episodes, np.int64)
         self.test_reached = np.zeros(conditions.evaluation.episodes, np.bool_)
-        rng = stream(conditions.seed, "create", run.identity)
-        self.attempt(lambda: self.equip(run.entrant.create(conditions.hill, rng)))
+        self.done = 0
+        self.attempt(self.equip, conditions)
 
-    def equip(self, agent: Any) -> None:
-        self.agent = agent
-        self.listener = listener(agent)
+    def equip(self, conditions: Conditions) -> None:
+        seed, identity = conditions.seed, self.run.identity
+        self.agent = self.run.entrant.create(conditions.hill, stream(seed, "create", identity))
+        self.listener = listener(self.agent)
+        self.begins = stream(seed, "start", identity)
+        self.checkpoint = checkpoint_of(conditions, self.run, self.agent, self.begins, self.rng, self.lengths)
+        self.done = self.checkpoint.restore()
 
     def attempt(self, call: Callable[..., None], *arguments: Any) -> None:
         """Do what may fail with the agent, if nothing has failed before."""
@@ -63,6 +72,9 @@ class _Car:
             except BaseException:  # sys.exit, too
                 self.error = traceback.format_exc()
                 self.action = _NO_THRUST
+
+    def save(self, episode: int) -> None:
+        self.checkpoint.save(episode)
 
     def begin_episode(self, observation: Any, progress: float) -> None:
         self.listener.begin_episode()
@@ -99,8 +111,14 @@ def _train(conditions: Conditions, cars: Mapping[str, _Car]) -> None:
 
     training = conditions.training
     env = mountain_car_v0.parallel_env(list(cars), conditions.hill, training.max_steps)
-    for episode in range(training.episodes):
-        observations, _ = env.reset(seed=conditions.seed if episode == 0 else None)
+    saved = time.monotonic()
+    for episode in range(next(iter(cars.values())).done, training.episodes):
+        if time.monotonic() - saved >= conditions.checkpoint_seconds:
+            saved = time.monotonic()
+            for car in cars.values():
+                car.attempt(car.save, episode)
+        start = {name: conditions.hill.reset(car.begins) for name, car in cars.items() if not car.error}
+        observations, _ = env.reset(options={"start": start})
         for name, car in cars.items():
             car.attempt(car.begin_episode, observations[name], episode / training.episodes)
         while _driving(env.agents, cars):

@@ -10,8 +10,10 @@ import re
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+import warnings
+from collections.abc import Callable, Generator
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -23,12 +25,13 @@ from arena.tournament import Conditions, Run
 
 Work = Callable[[str, Conditions, list[Run]], list[Outcome]]
 Task = tuple[str, Conditions, list[Run]]
+Finishing = Generator[list[Outcome], None, None]
 _UNEXPLAINED = 3  # deaths without a suspect before all are tried alone
 
 
 def imap(
     n_jobs: int, function: Callable[..., Any], tasks: list[Any], *, apart: bool = False
-) -> Iterator[Any]:
+) -> Generator[Any, None, None]:
     """The results as they come in, where joblib's backend can do that, else at the end.
 
     Args:
@@ -47,7 +50,14 @@ def imap(
         parallel = joblib.Parallel(return_as="generator_unordered", max_nbytes=None, **options)
     except ValueError:
         parallel = joblib.Parallel(max_nbytes=None, **options)
-    yield from parallel(joblib.delayed(_serve)(os.getpid(), function, task) for task in tasks)
+    results = parallel(joblib.delayed(_serve)(os.getpid(), function, task) for task in tasks)
+    try:
+        for result in results:  # noqa: UP028 (``yield from`` would close it before the warning is off)
+            yield result
+    finally:
+        with warnings.catch_warnings(), suppress(AttributeError):  # a list needs no closing
+            warnings.simplefilter("ignore", UserWarning)  # that cancelled tasks took time for nothing
+            results.close()
 
 
 def _serve(parent: int, function: Callable[..., Any], task: tuple[Any, ...]) -> Any:
@@ -72,7 +82,7 @@ def _leave_with(parent: int) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Iterator[list[Outcome]]:
+def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Finishing:
     """The outcomes of all tasks, of those whose worker died as failed.
 
     Raises:
@@ -86,18 +96,17 @@ def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Itera
             yield from _survive(n_jobs, work, tasks, limits, folder)
 
 
-def _survive(
-    n_jobs: int, work: Work, tasks: list[Task], limits: Limits, folder: Path
-) -> Iterator[list[Outcome]]:
+def _survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits, folder: Path) -> Finishing:
     unexplained = 0
     left = {run.identity: (driver, conditions, run) for driver, conditions, runs in tasks for run in runs}
     while tasks:
         arguments = [(work, task, folder, limits, os.getpid()) for task in tasks]
         try:
-            for outcomes in imap(n_jobs, _claim_and_work, arguments, apart=bool(limits)):
-                for outcome in outcomes:
-                    del left[f"{outcome.entrant}#{outcome.replicate}"]
-                yield outcomes
+            with closing(imap(n_jobs, _claim_and_work, arguments, apart=bool(limits))) as finishing:
+                for outcomes in finishing:
+                    for outcome in outcomes:
+                        del left[f"{outcome.entrant}#{outcome.replicate}"]
+                    yield outcomes
         except BrokenProcessPool as death:
             suspects = _suspects(folder)
             unexplained += not suspects
@@ -121,7 +130,7 @@ def _try_alone(
     work: Work,
     limits: Limits,
     folder: Path,
-) -> Iterator[list[Outcome]]:
+) -> Finishing:
     """The outcomes of the suspects, which leave ``left``: failed where the reason is known."""
     for identity, reason in suspects.items():
         driver, conditions, run = left.pop(identity)

@@ -4,16 +4,22 @@ import logging
 import math
 import traceback
 from collections.abc import Callable, Iterable
+from contextlib import closing, suppress
+from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
+import numpy as np
+
 from arena import compiled_driver, pettingzoo_driver
+from arena.checkpoint import discard, savable
 from arena.claims import Limits
 from arena.outcome import Outcome, failed
 from arena.pool import Task, imap, survive
 from arena.results import Results
 from arena.store import Store
 from arena.tournament import Conditions, Run, Tournament
-from envs.checks import choice, instance, integer
+from envs.checks import choice, instance, integer, number
 from envs.compilation import CompilationError
 
 DRIVERS = ("auto", "compiled", "pettingzoo")
@@ -30,6 +36,7 @@ def run(
     driver: str = "auto",
     *,
     progress: Progress | None = None,
+    checkpoint_seconds: float = 30.0,
 ) -> Results:
     """Run what is not finished of ``tournament``, over the cores.
 
@@ -42,6 +49,8 @@ def run(
             the returned object.
         n_jobs: workers, as joblib counts them: -1 is one a core.
         driver: ``"compiled"``, ``"pettingzoo"``, or ``"auto"``: compiled where the agent can be.
+        checkpoint_seconds: a run that takes longer is saved so often beside ``out``, and goes on from
+            there if it is interrupted.
         progress: called with the number of finished runs and of all, at the start and after each.
 
     Raises:
@@ -61,16 +70,23 @@ def run(
     pending = [r for r in tournament.runs if (r.entrant.name, r.replicate) not in done]
     try:
         travellers, lost = _travel(pending)
-        tasks = _plan(tournament.conditions, travellers, n_jobs, driver)
+        seconds = number("checkpoint_seconds", checkpoint_seconds, 0)
+        folder = None if path is None else f"{path}.checkpoints"
+        conditions = replace(tournament.conditions, checkpoints=folder, checkpoint_seconds=seconds)
+        tasks = _plan(conditions, travellers, n_jobs, driver)
         store = store or Store.create(path, config)
         for outcome in lost:
             store.add(outcome)
         report = progress or (lambda _finished, _total: None)
         finished = len(tournament.runs) - len(travellers)
+        driven = {(one.entrant.name, one.replicate): one for one in travellers}
+        if resuming:
+            _say_what_starts_anew(conditions, travellers)
         report(finished, len(tournament.runs))
-        for outcomes in survive(n_jobs, work, tasks, limits):
-            for outcome in outcomes:
+        with closing(survive(n_jobs, work, tasks, limits)) as finishing:
+            for outcome in chain.from_iterable(finishing):
                 store.add(outcome)
+                discard(conditions, driven[outcome.entrant, outcome.replicate])
                 finished += 1
                 report(finished, len(tournament.runs))
     except BaseException:
@@ -79,6 +95,13 @@ def run(
         raise
     store.release()
     return Results(store)
+
+
+def _say_what_starts_anew(conditions: Conditions, runs: list[Run]) -> None:
+    for entrant in {one.entrant.name: one.entrant for one in runs}.values():
+        with suppress(Exception):  # the agent cannot be created; its run will say so
+            if not savable(entrant.create(conditions.hill, np.random.default_rng(0))):
+                _log.warning("%s cannot be saved in the middle: its unfinished runs start anew", entrant.name)
 
 
 def _travel(runs: list[Run]) -> tuple[list[Run], list[Outcome]]:

@@ -58,12 +58,20 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Conditions:
-    """What all runs of a tournament have in common: all that a worker needs beside the entrant."""
+    """What all runs of a tournament have in common: all that a worker needs beside the entrant.
+
+    Attributes:
+        hill, training, evaluation, seed: the tournament's.
+        checkpoints: folder where long runs are saved; None if they are not.
+        checkpoint_seconds: time between two of a run's checkpoints.
+    """
 
     hill: Hill
     training: Training
     evaluation: Evaluation
     seed: int
+    checkpoints: str | None = None
+    checkpoint_seconds: float = 30.0
 
     def start_states(self, replicate: int) -> NDArray[np.float64]:
         """Where the test episodes start, the same for all entrants; shape (episodes, 2), read-only."""

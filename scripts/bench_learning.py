@@ -91,12 +91,13 @@ def compare(cls: type[Any], episodes: int, repeats: int) -> dict[str, float]:
 
     def ours() -> Any:
         agent = cls.create(hill, bins=bins)
-        loop = compile_loop(
-            train, hill, agent, listener(agent), hill.n_actions, episodes, limit, *streams(), lengths
-        )
-        return agent.values, lambda: loop(
-            hill, agent, listener(agent), hill.n_actions, episodes, limit, *streams(), lengths
-        )
+
+        def arguments() -> tuple[Any, ...]:
+            driven = (hill, agent, listener(agent), hill.n_actions)
+            return (*driven, 0, episodes, episodes, limit, *streams(), lengths)
+
+        loop = compile_loop(train, *arguments())
+        return agent.values, lambda: loop(*arguments())
 
     def hand() -> Any:
         q, visits = np.zeros((grid.size, 3)), np.zeros((grid.size, 3), np.int64)

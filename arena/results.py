@@ -43,7 +43,6 @@ class Results:
     def runs(self) -> list[dict[str, Any]]:
         """One dictionary a run, entrants in the tournament's order; plain values, NaN as None."""
         entrants = {entrant["name"]: entrant for entrant in self.config["entrants"]}
-        order = {name: place for place, name in enumerate(entrants)}
         return [
             {
                 "entrant": row["entrant"],
@@ -53,7 +52,7 @@ class Results:
                 **plain_scores(row),
                 **({"error": row["error"]} if row["error"] else {}),
             }
-            for row in sorted(self._store.rows(), key=lambda row: (order[row["entrant"]], row["replicate"]))
+            for row in self._store.rows()
         ]
 
     def frame(self) -> "pd.DataFrame":
@@ -106,7 +105,7 @@ class Results:
     def __repr__(self) -> str:
         config = self.config
         total = config["replicates"] * len(config["entrants"])
-        return f"<Results of {config['name']!r}: {len(list(self._store.rows()))} of {total} runs>"
+        return f"<Results of {config['name']!r}: {len(self._store.rows())} of {total} runs>"
 
 
 def load(path: str | Path) -> Results:

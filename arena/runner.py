@@ -16,6 +16,7 @@ from arena.checkpoint import discard, savable
 from arena.claims import Limits
 from arena.outcome import Outcome, failed
 from arena.pool import Task, imap, survive
+from arena.provenance import source_digests
 from arena.results import Results
 from arena.store import Store
 from arena.tournament import Conditions, Run, Tournament
@@ -65,7 +66,8 @@ def run(
     config = tournament.to_dict()
     limits = Limits(tournament.time_limit, tournament.memory_limit)
     resuming = path is not None and path.exists()
-    store = Store.resume(path, config) if path is not None and resuming else None
+    sources = source_digests({entrant.agent for entrant in tournament.entrants})
+    store = Store.resume(path, config, sources) if path is not None and resuming else None
     done = store.finished() if store else set()
     pending = [r for r in tournament.runs if (r.entrant.name, r.replicate) not in done]
     try:
@@ -74,7 +76,7 @@ def run(
         folder = None if path is None else f"{path}.checkpoints"
         conditions = replace(tournament.conditions, checkpoints=folder, checkpoint_seconds=seconds)
         tasks = _plan(conditions, travellers, n_jobs, driver)
-        store = store or Store.create(path, config)
+        store = store or Store.create(path, config, sources)
         for outcome in lost:
             store.add(outcome)
         report = progress or (lambda _finished, _total: None)

@@ -5,22 +5,26 @@ Tables (also in ``docs/results.md``): ``tournament`` (key, value), ``runs`` (one
 """
 
 import json
-import platform
 import sqlite3
 import urllib.parse
-from collections.abc import Iterator
-from importlib import metadata
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
-from filelock import FileLock, Timeout
+from filelock import FileLock
 
+from arena.locks import LockedError, lock_file, unlock
 from arena.outcome import Arrays, Outcome, unpack
+from arena.provenance import versions
 
 APPLICATION_ID = 0x4D434152  # "MCAR"
 SCHEMA_VERSION = 1
 
-_SCHEMA = """
+_SCHEMA = f"""
 CREATE TABLE tournament (key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE runs (
     entrant TEXT NOT NULL, replicate INTEGER NOT NULL, driver TEXT NOT NULL, status TEXT NOT NULL,
@@ -29,11 +33,27 @@ CREATE TABLE runs (
 CREATE TABLE arrays (
     entrant TEXT NOT NULL, replicate INTEGER NOT NULL, npz BLOB NOT NULL,
     PRIMARY KEY (entrant, replicate));
+PRAGMA application_id = {APPLICATION_ID};
+PRAGMA user_version = {SCHEMA_VERSION};
 """
 
 
 # Changing these changes no result, so a tournament may be continued with others.
 FREE = {"time_limit", "memory_limit"}
+
+
+_NUMBER = (int, float, type(None))
+_COLUMNS: dict[str, Any] = {
+    "entrant": str,
+    "replicate": int,
+    "driver": str,
+    "status": str,
+    "accuracy": _NUMBER,
+    "mean_length": _NUMBER,
+    "iterations": int,
+    "seconds": _NUMBER,
+    "error": str,
+}
 
 
 class ResultsError(ValueError):
@@ -54,51 +74,69 @@ class Store:
         self._lock = lock
 
     @classmethod
-    def create(cls, path: Path | None, config: dict[str, Any]) -> "Store":
+    def create(
+        cls, path: Path | None, config: dict[str, Any], sources: Mapping[str, str] = MappingProxyType({})
+    ) -> "Store":
         """A new file at ``path`` for the tournament ``config``; a temporary one for None.
+
+        ``sources`` are the digests of the agents' code, see ``source_digests``.
 
         Raises:
             ResultsError: when the file cannot be made.
         """
+        told = {"config": config, "versions": versions(), "sources": dict(sources)}
+        rows = [(key, json.dumps(value)) for key, value in told.items()]
         lock = None
         try:
             if path is not None:
                 path.parent.mkdir(parents=True, exist_ok=True)
-                lock = _locked(path)
-            connection = sqlite3.connect(path or "", isolation_level=None)
-            connection.execute("BEGIN")
-            for statement in _SCHEMA.split(";"):
-                connection.execute(statement)
-            made = {"config": config, "versions": versions()}
-            rows = [(key, json.dumps(value)) for key, value in made.items()]
-            connection.executemany("INSERT INTO tournament VALUES (?, ?)", rows)
-            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
-            connection.execute("COMMIT")
-        except (OSError, sqlite3.Error) as error:
-            _unlock(lock)
+                lock = lock_file(path)
+                path.with_name(f"{path.name}.new").unlink(missing_ok=True)
+            # Under another name until it is whole: a process may be killed at any moment.
+            new = path.with_name(f"{path.name}.new") if path else ""
+            with closing(sqlite3.connect(new)) if path else nullcontext(sqlite3.connect("")) as connection:
+                connection.executescript(_SCHEMA)
+                connection.executemany("INSERT INTO tournament VALUES (?, ?)", rows)
+                connection.commit()
+            if path is not None:
+                Path(new).replace(path)
+        except (OSError, sqlite3.Error, LockedError) as error:
+            unlock(lock)
             raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
-        return cls(connection, path, lock)
+        if path is None:
+            return cls(connection, None)
+        store = cls._open(path, "rw")
+        store._lock = lock  # noqa: SLF001 (its own)
+        return store
 
     @classmethod
-    def resume(cls, path: Path, config: dict[str, Any]) -> "Store":
+    def resume(
+        cls, path: Path, config: dict[str, Any], sources: Mapping[str, str] = MappingProxyType({})
+    ) -> "Store":
         """The file of an earlier start of the same tournament.
 
         Raises:
-            ResultsError: when it is no results file, or that of another tournament.
+            ResultsError: when it is no results file, or that of another tournament or of agents whose
+                code has changed since.
         """
         store = cls._open(path, "rw")
         try:
-            store._lock = _locked(path)  # noqa: SLF001 (its own)
-        except ResultsError:
+            store._lock = lock_file(path)  # noqa: SLF001 (its own)
+        except (LockedError, OSError) as error:
             store.close()
-            raise
+            raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
         difference = _difference(store.config, config)
         if difference:
             store.close()
             raise ResultsError(
                 f"{path} holds another tournament ({difference}); name another file or remove this one"
             )
+        for agent, before in store._told("sources").items():  # noqa: SLF001 (its own)
+            if sources.get(agent, before) != before:
+                store.close()
+                raise ResultsError(
+                    f"{path} holds runs of other code of {agent!r}; name another file or remove this one"
+                )
         return store
 
     @classmethod
@@ -115,24 +153,44 @@ class Store:
         if not path.is_file():
             raise ResultsError(f"there is no results file {path}")
         uri = f"file:{urllib.parse.quote(str(path.absolute()))}?mode={mode}"
+        store = None
         try:
-            connection = sqlite3.connect(uri, uri=True, isolation_level=None)
-            (application,) = connection.execute("PRAGMA application_id").fetchone()
-            (version,) = connection.execute("PRAGMA user_version").fetchone()
-            if application != APPLICATION_ID:
-                raise ResultsError(f"{path} is not a results file of the arena")
-            if version > SCHEMA_VERSION:
-                raise ResultsError(
-                    f"{path} was written by a newer arena (schema {version}, this one knows {SCHEMA_VERSION})"
-                )
-            store = cls(connection, path)
-            if not isinstance(store.config, dict):
-                raise ResultsError(f"{path} is damaged: its tournament is no table")
-        except (sqlite3.Error, ValueError, TypeError) as error:
+            store = cls(sqlite3.connect(uri, uri=True, isolation_level=None), path)
+            store._check()
+        except (sqlite3.Error, ResultsError) as error:
+            if store:
+                store.close()
             if isinstance(error, ResultsError):
                 raise
             raise ResultsError(f"{path} is not a results file of the arena: {_words(error)}") from error
         return store
+
+    def _check(self) -> None:
+        (application,) = self._connection.execute("PRAGMA application_id").fetchone()
+        (version,) = self._connection.execute("PRAGMA user_version").fetchone()
+        if application != APPLICATION_ID:
+            raise ResultsError(f"{self.path} is not a results file of the arena")
+        if version > SCHEMA_VERSION:
+            raise ResultsError(
+                f"{self.path} was written by a newer arena (schema {version}, known is {SCHEMA_VERSION})"
+            )
+        with self._reading():
+            if not _sound(self.config) or not isinstance(self.versions, dict):
+                raise TypeError("its tournament is incomplete")
+
+    @contextmanager
+    def _reading(self) -> Iterator[None]:
+        """Tell whatever comes of a damaged file in one sentence."""
+        try:
+            yield
+        except ResultsError:
+            raise
+        except (sqlite3.Error, ValueError, TypeError, LookupError, OSError, EOFError, MemoryError) as error:
+            raise ResultsError(f"{self.path} is damaged: {_words(error)}") from error
+        except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError) as error:
+            raise ResultsError(
+                f"{self.path} is damaged: its arrays cannot be read ({_words(error)})"
+            ) from error
 
     @property
     def config(self) -> dict[str, Any]:
@@ -169,76 +227,72 @@ class Store:
 
     def finished(self) -> set[tuple[str, int]]:
         """Entrant and replicate of the runs that need not be repeated."""
-        query = "SELECT entrant, replicate FROM runs WHERE status = 'finished'"
-        return set(self._connection.execute(query))
+        return {(row["entrant"], row["replicate"]) for row in self.rows() if row["status"] == "finished"}
 
-    def rows(self) -> Iterator[dict[str, Any]]:
-        """The runs in the order of their replicates and names; columns by name."""
-        cursor = self._connection.execute("SELECT * FROM runs ORDER BY replicate, entrant")
-        names = [column[0] for column in cursor.description]
-        for row in cursor:
-            yield dict(zip(names, row, strict=True))
+    def rows(self) -> list[dict[str, Any]]:
+        """The runs in the order of the entrants in the tournament, and of their replicates.
+
+        Raises:
+            ResultsError: when the file is damaged.
+        """
+        with self._reading():
+            order = {entrant["name"]: place for place, entrant in enumerate(self.config["entrants"])}
+            cursor = self._connection.execute(f"SELECT {', '.join(_COLUMNS)} FROM runs")  # noqa: S608
+            rows = [dict(zip(_COLUMNS, row, strict=True)) for row in cursor]
+            for row in rows:
+                for name, kinds in _COLUMNS.items():
+                    if not isinstance(row[name], kinds):
+                        raise TypeError(f"{name} of a run is {row[name]!r}")
+            orphans = (
+                "SELECT count(*) FROM runs LEFT JOIN arrays USING (entrant, replicate) WHERE npz IS NULL"
+            )
+            if self._connection.execute(orphans).fetchone()[0]:
+                raise LookupError("a run lacks its arrays")
+            return sorted(rows, key=lambda row: (order[row["entrant"]], row["replicate"]))
 
     def arrays(self, entrant: str, replicate: int) -> Arrays:
         """The arrays of a run by name.
 
         Raises:
             KeyError: when there is no such run.
+            ResultsError: when the file is damaged.
         """
-        found = self._connection.execute(
-            "SELECT npz FROM arrays WHERE entrant = ? AND replicate = ?", (entrant, replicate)
-        ).fetchone()
-        if found is None:
-            raise KeyError(f"no run {replicate} of {entrant!r}")
-        return unpack(found[0]) if found[0] else {}
+        query = "SELECT npz FROM arrays WHERE entrant = ? AND replicate = ?"
+        with self._reading():
+            found = self._connection.execute(query, (entrant, replicate)).fetchone()
+            if found:
+                return unpack(found[0]) if found[0] else {}
+        raise KeyError(f"no run {replicate} of {entrant!r}")
 
     def close(self) -> None:
         """Close the file; a temporary one is gone."""
         self._connection.close()
         self.release()
 
+    def __del__(self) -> None:
+        self.close()
+
     def release(self) -> None:
         """Let others write the file: nothing more will be added."""
-        _unlock(self._lock)
+        unlock(self._lock)
         self._lock = None
 
     def _told(self, key: str) -> Any:
         query = "SELECT value FROM tournament WHERE key = ?"
-        return json.loads(self._connection.execute(query, (key,)).fetchone()[0])
+        with self._reading():
+            return json.loads(self._connection.execute(query, (key,)).fetchone()[0])
 
 
-def _locked(path: Path) -> FileLock:
-    """The right to write ``path``, which a process loses when it ends, however it ends.
-
-    Raises:
-        ResultsError: when another process has it, or there can be no lock beside the file.
-    """
-    lock = FileLock(f"{path}.lock", timeout=0)
-    try:
-        lock.acquire()
-    except Timeout:
-        raise ResultsError(f"another process is writing {path}; wait for it, or name another file") from None
-    except OSError as error:
-        raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
-    return lock
-
-
-def _unlock(lock: FileLock | None) -> None:
-    if lock is not None:
-        Path(lock.lock_file).unlink(missing_ok=True)
-        lock.release()
-
-
-def versions() -> dict[str, str]:
-    """Versions of what computes the results."""
-    packages = ["mountain-car-arena", "numpy", "numba", "pettingzoo", "gymnasium", "joblib"]
-    found = {"python": platform.python_version(), "platform": platform.platform()}
-    for package in packages:
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            found[package] = "not installed"
-    return found
+def _sound(config: Any) -> bool:
+    """Whether a tournament that was read has what the rest of the program looks for."""
+    kinds = {"name": str, "reading": str, "seed": int, "replicates": int, "entrants": list}
+    if not isinstance(config, dict) or not all(isinstance(config.get(k), v) for k, v in kinds.items()):
+        return False
+    parts = {"name": str, "agent": str, "parameters": dict}
+    return all(
+        isinstance(entrant, dict) and all(isinstance(entrant.get(k), v) for k, v in parts.items())
+        for entrant in config["entrants"]
+    )
 
 
 def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:

@@ -1,18 +1,28 @@
 """The results file and what is read back from it."""
 
+import contextlib
+import io
 import json
 import math
 import sqlite3
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+import rich
 from hand_made_agents import Failing, race_of
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from agents import MomentumAgent, RandomAgent
 from arena import Entrant, Tournament, load, run
+from arena.comparison import compare
+from arena.digest import digest
 from arena.outcome import Outcome, pack, score, unpack
 from arena.store import SCHEMA_VERSION, Store
+from arena.tables import render
 
 
 @pytest.fixture
@@ -138,7 +148,7 @@ def test_other_files_are_told_and_left_alone(tmp_path: Path, file: Path) -> None
     connection = sqlite3.connect(file)
     connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION + 1}")
     connection.close()
-    with pytest.raises(ValueError, match=r"written by a newer arena \(schema 2, this one knows 1\)"):
+    with pytest.raises(ValueError, match=r"written by a newer arena \(schema 2, known is 1\)"):
         load(file)
 
 
@@ -156,3 +166,91 @@ def test_a_run_is_kept_once_it_is_added(tmp_path: Path, small: Tournament) -> No
         assert other.frame().accuracy.tolist() == [50.0]
     assert store.finished() == {("q", 1)}
     store.close()
+
+
+def test_runs_of_other_code_are_not_mixed(tmp_path: Path, small: Tournament) -> None:
+    path = tmp_path / "s.sqlite"
+    Store.create(path, small.to_dict(), {"sarsa": "before"}).close()
+    with pytest.raises(ValueError, match=r"s.sqlite holds runs of other code of 'sarsa'; name another file"):
+        Store.resume(path, small.to_dict(), {"sarsa": "after"})
+    Store.resume(path, small.to_dict(), {"sarsa": "before"}).close()
+
+
+def read_all(path: Path) -> None:
+    with load(path) as results:
+        results.frame()
+        results.to_dict()
+        repr(results)
+        digest(results)
+        compare(results)
+        rich.print(render(results), file=io.StringIO())
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_nothing_but_one_sentence_comes_of_a_file_with_wrong_bytes(
+    data: st.DataObject, file: Path, tmp_path: Path
+) -> None:
+    content = bytearray(file.read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        start = data.draw(st.integers(0, len(content) - 1))
+        content[start : start + data.draw(st.integers(1, 64))] = data.draw(st.binary(max_size=64))
+    path = tmp_path / "wrong.sqlite"
+    path.write_bytes(content)
+    with contextlib.suppress(ValueError):
+        read_all(path)
+
+
+VALUES = (
+    st.none() | st.integers(-(2**63), 2**63 - 1) | st.floats() | st.text(max_size=5) | st.binary(max_size=5)
+)
+JSONS = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=5,
+)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_nothing_but_one_sentence_comes_of_a_file_with_wrong_contents(
+    data: st.DataObject, file: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "wrong.sqlite"
+    path.write_bytes(file.read_bytes())
+    columns = [
+        "runs." + name for name in ("entrant", "replicate", "status", "accuracy", "iterations", "error")
+    ]
+    table, column = data.draw(st.sampled_from([*columns, "arrays.npz", "tournament.value"])).split(".")
+    value = data.draw(VALUES | JSONS.map(json.dumps))
+    if table == "tournament" and data.draw(st.booleans()):
+        with load(file) as results:
+            config = results.config
+        config[data.draw(st.sampled_from(sorted(config)))] = data.draw(JSONS)
+        value = json.dumps(config)
+    connection = sqlite3.connect(path)
+    with contextlib.suppress(sqlite3.IntegrityError):
+        connection.execute(f"UPDATE {table} SET {column} = ? WHERE rowid = 1", (value,))  # noqa: S608
+        connection.commit()
+    connection.close()
+    with contextlib.suppress(ValueError):
+        read_all(path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as POSIX can")
+def test_a_full_disk_is_told_and_what_was_finished_stays(tmp_path: Path) -> None:
+    code = """
+import resource, signal, sys
+from arena.cli import main
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (90_000, 90_000))
+sys.exit(main(["run", "quick", "--jobs", "1", "--out", "r.sqlite"]))
+"""
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("arena: cannot write the results file r.sqlite: ")
+    assert done.stderr.count("\n") == 1
+    with load(tmp_path / "r.sqlite") as results:
+        assert 0 < len(results.runs) < 12
+        assert {one["status"] for one in results.runs} == {"finished"}

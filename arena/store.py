@@ -43,6 +43,7 @@ FREE = {"time_limit", "memory_limit"}
 
 
 _NUMBER = (int, float, type(None))
+_MOST = 1e15  # more than any score or count
 _COLUMNS: dict[str, Any] = {
     "entrant": str,
     "replicate": int,
@@ -241,7 +242,8 @@ class Store:
             rows = [dict(zip(_COLUMNS, row, strict=True)) for row in cursor]
             for row in rows:
                 for name, kinds in _COLUMNS.items():
-                    if not isinstance(row[name], kinds):
+                    absurd = isinstance(row[name], (int, float)) and not 0 <= row[name] <= _MOST
+                    if absurd or not isinstance(row[name], kinds):
                         raise TypeError(f"{name} of a run is {row[name]!r}")
             orphans = (
                 "SELECT count(*) FROM runs LEFT JOIN arrays USING (entrant, replicate) WHERE npz IS NULL"

@@ -82,14 +82,24 @@ def _leave_with(parent: int) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Finishing:
-    """The outcomes of all tasks, of those whose worker died as failed.
+def check_enforceable(limits: Limits) -> None:
+    """See that limits can be enforced.
 
     Raises:
         ValueError: when there are limits and joblib's backend has no worker processes.
     """
-    if limits:
-        _needs_processes()
+    from joblib.parallel import get_active_backend
+
+    backend, _ = get_active_backend()
+    if limits and getattr(backend, "supports_sharedmem", False):
+        raise ValueError(
+            "time_limit and memory_limit must be enforced in worker processes, got the joblib backend "
+            f"{type(backend).__name__}, which has none"
+        )
+
+
+def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Finishing:
+    """The outcomes of all tasks, of those whose worker died as failed."""
     with tempfile.TemporaryDirectory(prefix="arena-") as name:
         folder = Path(name)
         with claims.backstop(folder, limits):
@@ -162,14 +172,3 @@ def _exit_codes(death: BrokenProcessPool) -> str:
     """What the message of joblib says of the exit code, such as ``SIGSEGV(-11)``."""
     found = re.search(r"exit codes of the workers are \{(.*?)\}", str(death))
     return f"exit code {found[1]}" if found else str(death).splitlines()[0]
-
-
-def _needs_processes() -> None:
-    from joblib.parallel import get_active_backend
-
-    backend, _ = get_active_backend()
-    if getattr(backend, "supports_sharedmem", False):
-        raise ValueError(
-            "time_limit and memory_limit must be enforced in worker processes, got the joblib backend "
-            f"{type(backend).__name__}, which has none"
-        )

@@ -15,7 +15,7 @@ from arena import compiled_driver, pettingzoo_driver
 from arena.checkpoint import discard, savable
 from arena.claims import Limits
 from arena.outcome import Outcome, failed
-from arena.pool import Task, imap, survive
+from arena.pool import Task, check_enforceable, imap, survive
 from arena.provenance import source_digests
 from arena.results import Results
 from arena.store import Store
@@ -62,9 +62,11 @@ def run(
     choice("driver", driver, DRIVERS)
     if integer("n_jobs", n_jobs) == 0:
         raise ValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
+    seconds = number("checkpoint_seconds", checkpoint_seconds, 0)
+    limits = Limits(tournament.time_limit, tournament.memory_limit)
+    check_enforceable(limits)
     path = None if out is None else Path(out)
     config = tournament.to_dict()
-    limits = Limits(tournament.time_limit, tournament.memory_limit)
     resuming = path is not None and path.exists()
     sources = source_digests({entrant.agent for entrant in tournament.entrants})
     store = Store.resume(path, config, sources) if path is not None and resuming else None
@@ -72,7 +74,6 @@ def run(
     pending = [r for r in tournament.runs if (r.entrant.name, r.replicate) not in done]
     try:
         travellers, lost = _travel(pending)
-        seconds = number("checkpoint_seconds", checkpoint_seconds, 0)
         folder = None if path is None else f"{path}.checkpoints"
         conditions = replace(tournament.conditions, checkpoints=folder, checkpoint_seconds=seconds)
         tasks = _plan(conditions, travellers, n_jobs, driver)
@@ -163,8 +164,8 @@ def _compile(conditions: Conditions, runs: Iterable[Run], n_jobs: int) -> dict[s
         kinds.setdefault(kind, one)
         kind_of[one.entrant.name] = kind
     tasks = [(kind, conditions, one) for kind, one in kinds.items()]
-    failed = dict(answer for answer in imap(n_jobs, _prepare, tasks) if answer[1])
-    return reasons | {name: failed[kind] for name, kind in kind_of.items() if kind in failed}
+    refused = dict(answer for answer in imap(n_jobs, _prepare, tasks) if answer[1])
+    return reasons | {name: refused[kind] for name, kind in kind_of.items() if kind in refused}
 
 
 def _prepare(kind: str, conditions: Conditions, one: Run) -> tuple[str, str]:
@@ -173,6 +174,8 @@ def _prepare(kind: str, conditions: Conditions, one: Run) -> tuple[str, str]:
         compiled_driver.prepare(conditions, one)
     except CompilationError as error:
         return kind, str(error)
+    except Exception as error:  # the agent cannot be created here; its run will say so
+        return kind, f"{type(error).__name__}: {error}"
     return kind, ""
 
 

@@ -106,7 +106,9 @@ def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Finis
             yield from _survive(n_jobs, work, tasks, limits, folder)
 
 
-def _survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits, folder: Path) -> Finishing:
+def _survive(
+    n_jobs: int, work: Work, tasks: list[Task], limits: Limits, folder: Path, *, alone: bool = False
+) -> Finishing:
     unexplained = 0
     left = {run.identity: (driver, conditions, run) for driver, conditions, runs in tasks for run in runs}
     while tasks:
@@ -122,7 +124,7 @@ def _survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits, folder:
             unexplained += not suspects
             if unexplained == _UNEXPLAINED:  # they die before they can claim anything
                 suspects = dict.fromkeys(left, "")
-            if len(left) == 1:
+            if alone:  # the second death, and nobody else is there
                 suspects = {name: reason or _exit_codes(death) for name, reason in suspects.items()}
         else:
             return
@@ -147,7 +149,7 @@ def _try_alone(
         if reason:
             yield [failed(run, driver, f"the worker died: {reason}")]
         else:
-            yield from _survive(2, work, [(driver, conditions, [run])], limits, folder)
+            yield from _survive(2, work, [(driver, conditions, [run])], limits, folder, alone=True)
 
 
 def _claim_and_work(work: Work, task: Task, folder: Path, limits: Limits, parent: int) -> list[Outcome]:

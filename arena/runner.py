@@ -4,6 +4,7 @@ import logging
 import math
 import traceback
 from collections.abc import Callable, Iterable
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, suppress
 from dataclasses import replace
 from itertools import chain
@@ -163,9 +164,16 @@ def _compile(conditions: Conditions, runs: Iterable[Run], n_jobs: int) -> dict[s
             continue
         kinds.setdefault(kind, one)
         kind_of[one.entrant.name] = kind
+    answers: dict[str, str] = {}
     tasks = [(kind, conditions, one) for kind, one in kinds.items()]
-    refused = dict(answer for answer in imap(n_jobs, _prepare, tasks) if answer[1])
-    return reasons | {name: refused[kind] for name, kind in kind_of.items() if kind in refused}
+    with suppress(BrokenProcessPool):
+        answers.update(imap(n_jobs, _prepare, tasks))
+    for task in tasks:
+        if task[0] not in answers:  # a worker died; each of the rest alone, to find out which is guilty
+            answers[task[0]] = "a worker died while it was compiled"
+            with suppress(BrokenProcessPool):
+                answers.update(imap(2, _prepare, [task]))
+    return reasons | {name: answers[kind] for name, kind in kind_of.items() if answers[kind]}
 
 
 def _prepare(kind: str, conditions: Conditions, one: Run) -> tuple[str, str]:

@@ -291,10 +291,18 @@ def _sound(config: Any) -> bool:
     if not isinstance(config, dict) or not all(isinstance(config.get(k), v) for k, v in kinds.items()):
         return False
     parts = {"name": str, "agent": str, "parameters": dict}
-    return all(
+    if not all(
         isinstance(entrant, dict) and all(isinstance(entrant.get(k), v) for k, v in parts.items())
         for entrant in config["entrants"]
-    )
+    ):
+        return False
+    # A name with control characters would command the terminal that it is printed on.
+    names = [
+        config["name"],
+        config["reading"],
+        *(e[k] for e in config["entrants"] for k in ("name", "agent")),
+    ]
+    return all(name.isprintable() for name in names)
 
 
 def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:

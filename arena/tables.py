@@ -91,8 +91,9 @@ def _paper(comparison: Comparison) -> RenderableType:
 def _failures(results: Results) -> Iterator[Text]:
     for run in results.runs:
         if run["status"] != "finished":
-            reason = run.get("error", "").strip().splitlines() or ["no reason"]
-            yield Text(f"{run['entrant']} replicate {run['replicate']} failed: {reason[-1]}")
+            last = (run.get("error", "").strip().splitlines() or ["no reason"])[-1]
+            reason = "".join(c if c.isprintable() else "?" for c in last)
+            yield Text(f"{run['entrant']} replicate {run['replicate']} failed: {reason}")
 
 
 def _table(title: str, *columns: str) -> Table:

@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from arena import load
 from arena.cli import main
@@ -185,3 +187,26 @@ def test_importing_the_packages_loads_nothing_heavy() -> None:
     assert "arena.runner" in loaded
     heavy = {"numba", "pettingzoo", "gymnasium", "pandas", "matplotlib", "scipy", "joblib", "typer", "rich"}
     assert loaded & heavy == set()
+
+
+WORDS = ["run", "show", "digest", "verify", "race.toml", "none.toml", "--jobs", "1", "0", "-1", "--out", "x"]
+WORDS += [
+    "--seed",
+    "--driver",
+    "fast",
+    "--json",
+    "--reading",
+    "--replicates",
+    "-",
+    "",
+    "\0",
+    "--",
+    "\ud800",
+    ".",
+]
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(arguments=st.lists(st.sampled_from(WORDS) | st.text(max_size=4), max_size=5))
+def test_no_command_line_ends_in_a_traceback(arguments: list[str], race: str) -> None:
+    assert main(arguments) in (0, 1, 2)

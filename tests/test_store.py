@@ -254,3 +254,19 @@ sys.exit(main(["run", "quick", "--jobs", "1", "--out", "r.sqlite"]))
     with load(tmp_path / "r.sqlite") as results:
         assert 0 < len(results.runs) < 12
         assert {one["status"] for one in results.runs} == {"finished"}
+
+
+def test_names_and_errors_cannot_command_the_terminal(file: Path) -> None:
+    connection = sqlite3.connect(file)
+    connection.execute("UPDATE runs SET status = 'failed', error = 'x \x1b[2J y' WHERE entrant = 'q'")
+    connection.commit()
+    with load(file) as results:
+        printed = io.StringIO()
+        rich.print(render(results), file=printed)
+    assert "q replicate 0 failed: x ?[2J y" in printed.getvalue()
+    assert "\x1b" not in printed.getvalue()
+    connection.execute("UPDATE tournament SET value = replace(value, '\"q\"', '\"q\\u001b[2J\"')")
+    connection.commit()
+    connection.close()
+    with pytest.raises(ValueError, match=r"small.sqlite is damaged: its tournament is incomplete"):
+        load(file)

@@ -53,6 +53,7 @@ def test_killed_at_twenty_random_moments_and_continued_the_digest_is_that_of_an_
 def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
     process = start("--seed", "3")
     while not race.exists():
+        assert process.poll() is None, Path("said").read_text()
         time.sleep(0.05)
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)
@@ -71,6 +72,7 @@ def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
 def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
     process = start()
     while not race.exists():
+        assert process.poll() is None, Path("said").read_text()
         time.sleep(0.05)
     second = start()
     assert second.wait(60) == 2

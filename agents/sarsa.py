@@ -19,6 +19,6 @@ class Sarsa(Tabular):
         terminated: bool,
     ) -> None:
         """Towards the reward and the value of the next action in the next cell."""
-        cell, next_cell = self.grid.encode(observation), self.grid.encode(next_observation)
+        cell, next_cell = self.cells.encode(observation), self.cells.encode(next_observation)
         next_value = self.values[next_cell, next_action]
         self.update.apply(self.values, self.visits, cell, action, reward, next_value, terminated)

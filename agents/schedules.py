@@ -8,6 +8,7 @@ from envs.checks import Validated, number
 class _Line(NamedTuple):
     start: float
     end: float
+    until: float
 
 
 class LinearDecay(Validated, _Line):  # type: ignore[misc]
@@ -16,19 +17,23 @@ class LinearDecay(Validated, _Line):  # type: ignore[misc]
     Args:
         start: value in the first episode, in [0, 1].
         end: value that is approached in the last, in [0, 1].
+        until: share of the training after which it is ``end``, in (0, 1].
 
     Raises:
-        TypeError, ValueError: when one of them is no probability.
+        TypeError, ValueError: when one of them breaks its rule.
     """
 
     __slots__ = ()
 
-    def __new__(cls, start: float = 0.6, end: float = 0.01) -> Self:  # noqa: D102 (described by the class)
-        return super().__new__(cls, number("start", start, 0, 1), number("end", end, 0, 1))
+    def __new__(cls, start: float = 0.6, end: float = 0.01, until: float = 1.0) -> Self:  # noqa: D102 (described by the class)
+        start, end = number("start", start, 0, 1), number("end", end, 0, 1)
+        return super().__new__(cls, start, end, number("until", until, 0, 1, above=True))
 
     def at(self, progress: float) -> float:
         """The value when the share ``progress`` of the episodes is done."""
-        return self.start + (self.end - self.start) * progress
+        if progress >= self.until:
+            return self.end
+        return self.start + (self.end - self.start) * (progress / self.until)
 
 
 class _Harmonic(NamedTuple):

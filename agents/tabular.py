@@ -1,15 +1,16 @@
-"""A table of action values over the cells of a grid, driven epsilon-greedily."""
+"""A table of action values over the cells of a grid, and how the agent explores."""
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple, Self
+from typing import Literal, NamedTuple, Self
 
 import numpy as np
 
+from agents.cells import Binning, Bins, Cells, make_cells
 from agents.contract import Observation, Task
-from agents.grid import Grid
-from agents.policies import Table, best_action, epsilon_greedy
+from agents.exploration import Exploration, Softmax, UpperConfidence, make_exploration
+from agents.parameters import Probability, StepSize, validated
+from agents.policies import Counts, Table, best_action
 from agents.schedules import HarmonicRate, LinearDecay
-from agents.updates import Counts, Update, make_update
+from agents.updates import Update, make_update
 from envs.checks import number
 
 
@@ -20,34 +21,39 @@ class Tabular(NamedTuple):
     action was taken in a cell. Among equal values the lowest action is the greedy one.
     """
 
-    grid: Grid
+    cells: Cells
     values: Table
     visits: Counts
     update: Update
-    epsilon: LinearDecay
+    policy: Exploration
 
     @classmethod
+    @validated
     def create(
         cls,
         task: Task,
         *,
-        bins: int | Sequence[int] = (20, 30),
-        discount: float = 0.99,
-        step_size: HarmonicRate = HarmonicRate(),  # noqa: B008 (immutable)
-        epsilon: LinearDecay = LinearDecay(),  # noqa: B008 (immutable)
-        initial_values: float | Sequence[float] = 0.0,
-        count_visits: str = "step",
-        goal: str = "terminal",
+        bins: Bins = (20, 30),
+        binning: Binning = "uniform",
+        discount: Probability = 0.99,
+        step_size: HarmonicRate | StepSize = HarmonicRate(),  # noqa: B008 (immutable)
+        epsilon: LinearDecay | Probability = LinearDecay(),  # noqa: B008 (immutable)
+        explore: Softmax | UpperConfidence | None = None,
+        initial_values: float | tuple[float, float] = 0.0,
+        count_visits: Literal["step", "episode", "state"] = "step",
+        goal: Literal["terminal", "bootstrap", "zero"] = "terminal",
         rng: np.random.Generator | None = None,
     ) -> Self:
         """The agent before it has learned anything; the defaults are the paper's.
 
         Args:
             task: the hill.
-            bins: cells along position and velocity.
+            bins: cells along position and velocity, or their edges; see ``agents.make_cells``.
+            binning: ``"uniform"``, ``"quantile"`` or ``"kmeans"``.
             discount: gamma, in [0, 1].
-            step_size: alpha_n of Eq. (15).
+            step_size: alpha_n of Eq. (15), or a constant.
             epsilon: share of random actions.
+            explore: what takes the place of epsilon-greedy exploration.
             initial_values: of the whole table, or (low, high) to draw each uniformly.
             count_visits: what n of Eq. (15) counts: each ``"step"`` that takes the action in the
                 cell, one of them an ``"episode"``, or each visit of the ``"state"``'s cell.
@@ -58,33 +64,35 @@ class Tabular(NamedTuple):
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        grid = Grid.over(task, bins)
-        shape = (grid.size, task.n_actions)
-        discount = number("discount", discount, 0, 1)
-        for name, schedule in (("step_size", step_size), ("epsilon", epsilon)):
-            if not callable(getattr(schedule, "at", None)):
-                raise TypeError(f"{name} must be a schedule with a method at, got {schedule!r}")
-        update = make_update(shape, step_size, discount, count_visits, goal)
-        return cls(grid, _initial(shape, initial_values, rng), np.zeros(shape, np.int64), update, epsilon)
+        cells = make_cells(task, bins, binning, rng)
+        shape = (cells.size, task.n_actions)
+        rate = step_size if isinstance(step_size, HarmonicRate) else HarmonicRate(step_size, 1.0, 0.0)
+        return cls(
+            cells,
+            _initial(shape, initial_values, rng),
+            np.zeros(shape, np.int64),
+            make_update(shape, rate, discount, count_visits, goal),
+            make_exploration(epsilon, explore),
+        )
 
     def begin_episode(self) -> None:
         """Let the update count episodes."""
         self.update.begin_episode()
 
     def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
-        """Epsilon-greedy in the observation's cell."""
-        return epsilon_greedy(self.values, self.grid.encode(observation), self.epsilon.at(progress), rng)
+        """What the exploration chooses in the observation's cell."""
+        return self.policy.choose(self.values, self.visits, self.cells.encode(observation), progress, rng)
 
     def greedy(self, observation: Observation) -> int:
         """The best action of the observation's cell, Eq. (14)."""
-        return best_action(self.values, self.grid.encode(observation))
+        return best_action(self.values, self.cells.encode(observation))
 
 
-def _initial(shape: tuple[int, int], values: Any, rng: np.random.Generator | None) -> Table:
-    if not isinstance(values, Sequence):
-        return np.full(shape, number("initial_values", values))
-    if len(values) != 2:
-        raise ValueError(f"initial_values must be a number or (low, high), got {values!r}")
-    low = number("initial_values", values[0])
-    high = number("initial_values", values[1], low)
+def _initial(
+    shape: tuple[int, int], values: float | tuple[float, float], rng: np.random.Generator | None
+) -> Table:
+    if isinstance(values, float):
+        return np.full(shape, values)
+    low, high = values
+    number("initial_values", high, low)
     return low + (high - low) * (rng or np.random.default_rng()).random(shape)

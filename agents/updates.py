@@ -4,13 +4,9 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.policies import Table
+from agents.policies import Counts, Table
 from agents.schedules import HarmonicRate
-from envs.checks import choice
-
-Counts = NDArray[np.int64]
 
 
 class GoalRule(IntEnum):
@@ -24,38 +20,24 @@ class GoalRule(IntEnum):
     """The value is set to 0."""
 
 
-class StepUpdate(NamedTuple):
-    """Eq. (15), with n the number of times that the action was taken in the cell."""
+class Counting(IntEnum):
+    """What n of Eq. (15) counts."""
+
+    STEP = 0
+    """Every earlier time that the action was taken in the cell."""
+    EPISODE = 1
+    """The earlier episodes in which it was."""
+    STATE = 2
+    """Every earlier visit of the cell, whatever the action."""
+
+
+class Update(NamedTuple):
+    """Eq. (15): a step towards the target, the smaller the more often the action was taken before."""
 
     step_size: HarmonicRate
     discount: float
     goal: GoalRule
-
-    def begin_episode(self) -> None:
-        """Nothing to do."""
-
-    def apply(
-        self,
-        values: Table,
-        visits: Counts,
-        cell: int,
-        action: int,
-        reward: float,
-        next_value: float,
-        terminated: bool,
-    ) -> None:
-        """Move ``values[cell, action]`` towards ``reward + discount * next_value``."""
-        rate = self.step_size.at(visits[cell, action])
-        towards(values, cell, action, reward, next_value, terminated, rate, self.discount, self.goal)
-        visits[cell, action] += 1
-
-
-class EpisodeUpdate(NamedTuple):
-    """Eq. (15), with n the number of earlier episodes in which the action was taken in the cell."""
-
-    step_size: HarmonicRate
-    discount: float
-    goal: GoalRule
+    counting: Counting
     episodes: Counts  # (cells, actions): episodes with a visit
     latest: Counts  # (cells, actions): the latest of them
     now: Counts  # (1,): this episode
@@ -74,66 +56,30 @@ class EpisodeUpdate(NamedTuple):
         next_value: float,
         terminated: bool,
     ) -> None:
-        """Move ``values[cell, action]`` towards ``reward + discount * next_value``."""
+        """Move ``values[cell, action]`` towards ``reward + discount * next_value``, and count the visit."""
+        rate = self.step_size.at(self.earlier(visits, cell, action))
+        visits[cell, action] += 1
+        if terminated and self.goal == GoalRule.ZERO:
+            values[cell, action] = 0.0
+            return
+        target = reward
+        if not terminated or self.goal == GoalRule.BOOTSTRAP:
+            target += self.discount * next_value
+        values[cell, action] += rate * (target - values[cell, action])
+
+    def earlier(self, visits: Counts, cell: int, action: int) -> int:
+        """The number n of Eq. (15); where episodes are counted, this one is from now on."""
+        if self.counting == Counting.STEP:
+            return visits[cell, action]  # type: ignore[no-any-return]
+        if self.counting == Counting.STATE:
+            total = 0
+            for other in range(visits.shape[1]):
+                total += visits[cell, other]
+            return total
         if self.latest[cell, action] != self.now[0]:
             self.latest[cell, action] = self.now[0]
             self.episodes[cell, action] += 1
-        rate = self.step_size.at(self.episodes[cell, action] - 1)
-        towards(values, cell, action, reward, next_value, terminated, rate, self.discount, self.goal)
-        visits[cell, action] += 1
-
-
-class StateUpdate(NamedTuple):
-    """Eq. (15), with n the number of times that the cell was visited, whatever the action."""
-
-    step_size: HarmonicRate
-    discount: float
-    goal: GoalRule
-
-    def begin_episode(self) -> None:
-        """Nothing to do."""
-
-    def apply(
-        self,
-        values: Table,
-        visits: Counts,
-        cell: int,
-        action: int,
-        reward: float,
-        next_value: float,
-        terminated: bool,
-    ) -> None:
-        """Move ``values[cell, action]`` towards ``reward + discount * next_value``."""
-        earlier = 0
-        for other in range(visits.shape[1]):
-            earlier += visits[cell, other]
-        rate = self.step_size.at(earlier)
-        towards(values, cell, action, reward, next_value, terminated, rate, self.discount, self.goal)
-        visits[cell, action] += 1
-
-
-Update = StepUpdate | EpisodeUpdate | StateUpdate
-
-
-def towards(
-    values: Table,
-    cell: int,
-    action: int,
-    reward: float,
-    next_value: float,
-    terminated: bool,
-    rate: float,
-    discount: float,
-    goal: GoalRule,
-) -> None:
-    """The new value of Eq. (15): a step of ``rate`` from the old one towards the target."""
-    if terminated and goal == GoalRule.ZERO:
-        values[cell, action] = 0.0
-        return
-    target = reward
-    if not terminated or goal == GoalRule.BOOTSTRAP:
-        target += discount * next_value
-    values[cell, action] += rate * (target - values[cell, action])
+        return self.episodes[cell, action] - 1  # type: ignore[no-any-return]
 
 
 def make_update(
@@ -145,15 +91,9 @@ def make_update(
         shape: of the table.
         step_size: schedule of the step size.
         discount: of the next value.
-        count_visits: ``"step"``: every time the action was taken in the cell; ``"episode"``: once
-            an episode; ``"state"``: every visit of the cell.
+        count_visits: ``"step"``, ``"episode"`` or ``"state"``, see ``Counting``.
         goal: ``"terminal"``, ``"bootstrap"`` or ``"zero"``, see ``GoalRule``.
     """
-    rule = GoalRule[choice("goal", goal, [rule.name.lower() for rule in GoalRule]).upper()]
-    match choice("count_visits", count_visits, ["step", "episode", "state"]):
-        case "step":
-            return StepUpdate(step_size, discount, rule)
-        case "state":
-            return StateUpdate(step_size, discount, rule)
     episodes, latest, now = (np.zeros(size, np.int64) for size in (shape, shape, 1))
-    return EpisodeUpdate(step_size, discount, rule, episodes, latest, now)
+    rule, counting = GoalRule[goal.upper()], Counting[count_visits.upper()]
+    return Update(step_size, discount, rule, counting, episodes, latest, now)

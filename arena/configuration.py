@@ -87,9 +87,4 @@ def _entrants(table: Any) -> Iterator[Entrant]:
     for key, value in (("parameters", parameters), ("sweep", over)):
         if not isinstance(value, Mapping):
             raise TypeError(f"{key} of entrant {name!r} must be a table, got {value!r}")
-    try:
-        yield from sweep(name, agent, over, **parameters) if over else [Entrant(name, agent, **parameters)]
-    except TypeError as error:
-        raise TypeError(f"entrant {name!r}: {error}") from error
-    except ValueError as error:
-        raise ValueError(f"entrant {name!r}: {error}") from error
+    yield from sweep(name, agent, over, **parameters) if over else [Entrant(name, agent, **parameters)]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from agents import agent_name
-from envs.checks import choice
+from agents.parameters import settle_all
 
 _METHODS = ("act", "learn", "greedy")
 
@@ -47,7 +47,13 @@ class Entrant:
                 )
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "agent", agent)
-        object.__setattr__(self, "parameters", _complete(agent, parameters))
+        try:
+            complete = settle_all(agent, agent_name(agent), parameters)
+        except TypeError as error:
+            raise TypeError(f"entrant {name!r}: {error}") from error
+        except ValueError as error:
+            raise ValueError(f"entrant {name!r}: {error}") from error
+        object.__setattr__(self, "parameters", complete)
         object.__setattr__(self, "given", frozenset(parameters))
 
     def create(self, task: Any, rng: np.random.Generator) -> Any:
@@ -116,43 +122,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, (str, bytes)):
         return [plain(part) for part in value]
     return value if value is None or isinstance(value, (bool, int, float, str)) else repr(value)
-
-
-def _complete(agent: type[Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """``given`` and the defaults of the rest, in the order in which the agent declares them."""
-    signature = inspect.signature(getattr(agent, "create", agent))
-    declared = {
-        name: parameter
-        for name, parameter in signature.parameters.items()
-        if name != "rng" and (parameter.kind is parameter.KEYWORD_ONLY or not hasattr(agent, "create"))
-    }
-    free = any(parameter.kind is parameter.VAR_KEYWORD for parameter in declared.values())
-    declared = {
-        name: parameter
-        for name, parameter in declared.items()
-        if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)
-    }
-    for name in given:
-        if not free:
-            choice(f"parameter of {agent_name(agent)}", name, declared)
-    missing = [n for n, p in declared.items() if p.default is p.empty and n not in given]
-    if missing:
-        raise TypeError(f"parameter {missing[0]} of {agent_name(agent)} must be given")
-    complete = {}
-    for name in [*declared, *(n for n in given if n not in declared)]:
-        default = declared[name].default if name in declared else None
-        complete[name] = _settle(name, given[name], default) if name in given else default
-    return complete
-
-
-def _settle(name: str, value: Any, default: Any) -> Any:
-    """Lists as tuples, and a table of a file as the named tuple that the default is."""
-    if isinstance(value, Mapping) and hasattr(type(default), "_fields"):
-        kind = type(default)
-        for key in value:
-            choice(f"field of {name}", key, kind._fields)
-        return kind(**value)
-    return tuple(value) if isinstance(value, list) else value
 
 
 def _label(name: str, value: Any) -> str:

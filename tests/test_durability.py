@@ -51,6 +51,7 @@ def test_killed_at_twenty_random_moments_and_continued_the_digest_is_that_of_an_
 
 @POSIX
 def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
+    Path("race.toml").write_text(RACE.replace("replicates = 8", "replicates = 60"))
     process = start("--seed", "3")
     while not race.exists():
         assert process.poll() is None, Path("said").read_text()

@@ -4,7 +4,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from agents import HarmonicRate, LinearDecay, MomentumAgent, QLearning, RandomAgent, Sarsa
+from agents import Grid, HarmonicRate, LinearDecay, MomentumAgent, QLearning, RandomAgent, Sarsa
+from agents.exploration import EpsilonGreedy
 from agents.policies import best_action, epsilon_greedy
 from envs import Hill
 
@@ -128,9 +129,9 @@ def test_initial_values_between_two_are_drawn_from_the_generator_given() -> None
 
 def test_defaults_are_the_papers() -> None:
     agent = Sarsa.create(Hill())
-    assert agent.grid.bins == (20, 30)
+    assert agent.cells == Grid.over(Hill(), (20, 30))
     assert agent.values.shape == agent.visits.shape == (600, 3)
-    assert agent.epsilon == LinearDecay(0.6, 0.01)
+    assert agent.policy == EpsilonGreedy(LinearDecay(0.6, 0.01))
     assert (agent.update.step_size, agent.update.discount) == (HarmonicRate(1.0, 10.0, 0.01), 0.99)
 
 
@@ -221,7 +222,7 @@ def test_momentum_agent_thrusts_the_way_the_car_moves() -> None:
     [
         lambda: LinearDecay()._replace(end=3),
         lambda: HarmonicRate()._replace(A=0),
-        lambda: Sarsa.create(Hill(), step_size=0.1),  # type: ignore[arg-type]
+        lambda: Sarsa.create(Hill(), step_size=1.1),
     ],
 )
 def test_no_way_leads_around_the_validation_of_parameters(replace: Any) -> None:

@@ -126,7 +126,10 @@ ONE = Entrant("s", Sarsa)
         (lambda: Training(max_steps=-5), "training max_steps must be at least 1, got -5"),
         (lambda: evaluation(episodes=math.nan), "evaluation episodes must be an integer, got nan"),
         (lambda: tournament((Entrant("s", Sarsa, bins=0),)), "entrant 's': bins must be at least 1, got 0"),
-        (lambda: tournament((Entrant("s", Sarsa, epsilon=0.1),)), "epsilon must be a schedule .* got 0.1"),
+        (
+            lambda: tournament((Entrant("s", Sarsa, epsilon="x"),)),
+            "epsilon must be LinearDecay or float .* got 'x'",
+        ),
         (lambda: tournament((Entrant("s", Sarsa, discount=2),)), "entrant 's': discount must be in .0, 1."),
     ],
 )

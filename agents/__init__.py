@@ -1,10 +1,11 @@
 """Agents and their parts: discretizations, schedules, one algorithm a file."""
 
 from agents.contract import Agent, Task
+from agents.exploration import Softmax, UpperConfidence
 from agents.grid import Grid
 from agents.q_learning import QLearning
 from agents.references import MomentumAgent, RandomAgent
-from agents.registry import agent_class, agent_name
+from agents.registry import agent_class, agent_name, register
 from agents.sarsa import Sarsa
 from agents.schedules import HarmonicRate, LinearDecay
 
@@ -17,7 +18,10 @@ __all__ = [
     "QLearning",
     "RandomAgent",
     "Sarsa",
+    "Softmax",
     "Task",
+    "UpperConfidence",
     "agent_class",
     "agent_name",
+    "register",
 ]

@@ -1,11 +1,21 @@
-"""The built-in agents by the names they have in files and on the command line."""
+"""The agents by the names they have in files and on the command line.
 
+Built-in ones, those that installed packages offer by an entry point of the group ``arena.agents``, and
+those that this process registers.
+"""
+
+import inspect
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from agents.q_learning import QLearning
 from agents.references import MomentumAgent, RandomAgent
 from agents.sarsa import Sarsa
 from envs.checks import choice
+
+GROUP = "arena.agents"
 
 BUILT_IN: dict[str, type[Any]] = {
     "q-learning": QLearning,
@@ -14,6 +24,50 @@ BUILT_IN: dict[str, type[Any]] = {
     "momentum": MomentumAgent,
 }
 
+_METHODS = {
+    "act": ("observation", "progress", "rng"),
+    "learn": ("observation", "action", "reward", "next_observation", "next_action", "terminated"),
+    "greedy": ("observation",),
+}
+
+
+@dataclass(frozen=True)
+class Registered:
+    """An agent under a name.
+
+    Attributes:
+        name: in files and on the command line.
+        agent: the class.
+        origin: where it comes from, in words.
+    """
+
+    name: str
+    agent: type[Any]
+    origin: str
+
+
+_registered: dict[str, Registered] = {}
+
+
+def register(name: str, agent: type[Any], origin: str = "registered by a script") -> None:
+    """Make ``agent`` known as ``name`` in this process; the same origin may do so again.
+
+    Raises:
+        TypeError: when the class lacks a method of the contract, or one has the wrong arguments.
+        ValueError: when the name is taken.
+    """
+    check_methods(agent)
+    taken = {**_built_in(), **_installed()[0], **_registered}.get(name)
+    if taken and taken.origin != origin:
+        raise ValueError(f"agent {name!r} of {origin} has a name that is taken: {taken.origin}")
+    _registered[name] = Registered(name, agent, origin)
+
+
+def all_agents() -> tuple[dict[str, Registered], list[str]]:
+    """All agents by name, and a line for each installed plugin that is broken."""
+    installed, broken = _installed()
+    return {**_built_in(), **installed, **_registered}, list(broken)
+
 
 def agent_class(name: str) -> type[Any]:
     """The class of the agent called ``name``.
@@ -21,12 +75,75 @@ def agent_class(name: str) -> type[Any]:
     Raises:
         ValueError: when there is none; the message lists those there are.
     """
-    return BUILT_IN[choice("agent", name, BUILT_IN)]
+    if name in BUILT_IN:  # spares loading the packages
+        return BUILT_IN[name]
+    known, broken = all_agents()
+    try:
+        return known[choice("agent", name, known)].agent
+    except ValueError as error:
+        raise ValueError("; ".join([str(error), *broken])) from None
 
 
 def agent_name(cls: type[Any]) -> str:
-    """The name of the class in files: a built-in's own, else ``module:Class``."""
+    """The name of the class in files: the one it is registered by, else ``module:Class``."""
     for name, known in BUILT_IN.items():
         if known is cls:
             return name
+    for entry in (*_registered.values(), *_installed()[0].values()):
+        if entry.agent is cls:
+            return entry.name
     return f"{cls.__module__}:{cls.__qualname__}"
+
+
+def check_methods(agent: Any) -> None:
+    """See that a class has the methods of ``agents.Agent``, with arguments as many as it says.
+
+    Raises:
+        TypeError: when it has not.
+    """
+    if not isinstance(agent, type):
+        raise TypeError(f"agent must be a class, got {agent!r}")
+    for method, arguments in _METHODS.items():
+        found = getattr(agent, method, None)
+        if not callable(found):
+            raise TypeError(
+                f"agent must have the methods {', '.join(_METHODS)}; {agent.__name__} lacks {method}"
+            )
+        try:
+            inspect.signature(found).bind(None, *arguments)
+        except TypeError:
+            raise TypeError(
+                f"{agent.__name__}.{method} must take (self, {', '.join(arguments)}), "
+                f"got {inspect.signature(found)}"
+            ) from None
+        except ValueError:  # not written in Python
+            continue
+
+
+def _built_in() -> dict[str, Registered]:
+    return {name: Registered(name, agent, "built in") for name, agent in BUILT_IN.items()}
+
+
+@cache
+def _installed() -> tuple[dict[str, Registered], tuple[str, ...]]:
+    """The agents of installed packages, and a line for each that is broken."""
+    found: dict[str, Registered] = {}
+    broken = []
+    for entry in sorted(entry_points(group=GROUP), key=lambda entry: (entry.name, entry.value)):
+        origin = _origin(entry)
+        try:
+            agent = entry.load()
+            check_methods(agent)
+        except Exception as error:  # whatever the package raises
+            broken.append(f"agent {entry.name!r} of {origin} is broken: {type(error).__name__}: {error}")
+            continue
+        if entry.name in BUILT_IN or entry.name in found:
+            taken = found[entry.name].origin if entry.name in found else "built in"
+            broken.append(f"agent {entry.name!r} of {origin} has a name that is taken: {taken}")
+            continue
+        found[entry.name] = Registered(entry.name, agent, origin)
+    return found, tuple(broken)
+
+
+def _origin(entry: EntryPoint) -> str:
+    return f"package {entry.dist.name} {entry.dist.version}" if entry.dist else f"module {entry.module}"

@@ -2,6 +2,7 @@
 
 from arena.builtin import paper, quick
 from arena.entrant import Entrant, sweep
+from arena.plugins import load_plugin
 from arena.results import Results, load
 from arena.runner import run
 from arena.tournament import Evaluation, Tournament, Training
@@ -13,6 +14,7 @@ __all__ = [
     "Tournament",
     "Training",
     "load",
+    "load_plugin",
     "paper",
     "quick",
     "run",

@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 
 from arena.builtin import BUILT_IN
+from arena.cli_agents import Plugins, add_commands, load_plugins
 from arena.configuration import load_tournament
 from arena.results import Results, load
 from arena.runner import run as run_tournament
@@ -25,6 +26,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+
+add_commands(app)
 
 BAD_INPUT = 2
 SOME_FAILED = 1
@@ -62,6 +65,7 @@ def run(
         str | None,
         typer.Option(help="How to read the paper's protocol; see docs/readings.md.", metavar="NAME"),
     ] = None,
+    plugin: Plugins = None,
     driver: Annotated[Driver, typer.Option(help="What steps the cars.")] = Driver.AUTO,
     strict: Annotated[bool, typer.Option(help="Exit with 1 if an entrant failed.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -69,6 +73,7 @@ def run(
     """Run a tournament, keep its results and print its tables."""
     if jobs == 0:
         raise ValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
+    load_plugins(plugin)
     given = {"replicates": replicates, "seed": seed, "reading": reading}
     chosen = _tournament(tournament, {key: value for key, value in given.items() if value is not None})
     out = out or _default_file(chosen.name)
@@ -106,10 +111,12 @@ def digest(file: Annotated[Path, typer.Argument(help="Results file.", metavar="F
 def verify(
     file: Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")],
     runs: Annotated[int, typer.Option(help="How many runs to repeat.", metavar="K")] = 4,
+    plugin: Plugins = None,
 ) -> None:
     """Run a sample again, with the other driver and other workers; exit with 1 if a bit differs."""
     from arena.verification import verify as differences
 
+    load_plugins(plugin)
     with load(file) as results:
         found = next(differences(results, runs), None)
     if found:

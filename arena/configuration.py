@@ -1,5 +1,6 @@
 """A tournament as a TOML file."""
 
+import logging
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
@@ -8,11 +9,13 @@ from typing import Any
 
 from agents import agent_class
 from arena.entrant import Entrant, sweep
+from arena.plugins import PluginError, Unavailable, load_plugin
 from arena.tournament import Evaluation, Tournament, Training
 from envs import Hill
 from envs.checks import choice
 
-_KEYS = tuple(field.name for field in fields(Tournament))
+_KEYS = (*(field.name for field in fields(Tournament)), "plugins")
+_log = logging.getLogger("arena")
 _ENTRANT_KEYS = ("name", "agent", "parameters", "sweep")
 
 
@@ -20,7 +23,9 @@ def load_tournament(path: str | Path, **changes: Any) -> Tournament:
     """The tournament that the TOML file ``path`` describes.
 
     Its tables are the arguments of ``Tournament``, ``Hill``, ``Training`` and ``Evaluation``; each
-    ``[[entrants]]`` has an ``agent`` and may have a ``name``, ``parameters`` and a ``sweep``.
+    ``[[entrants]]`` has an ``agent`` and may have a ``name``, ``parameters`` and a ``sweep``. Its
+    ``plugins`` are files with agents, relative to its folder. The entrants of one that is broken fail,
+    the others race.
 
     Args:
         path: of the file; its stem is the tournament's name if the file gives none.
@@ -39,15 +44,19 @@ def load_tournament(path: str | Path, **changes: Any) -> Tournament:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{path} is not a TOML file: {error}") from error
     try:
-        return from_dict({"name": path.stem, **content, **changes})
+        return from_dict({"name": path.stem, **content, **changes}, path.parent)
     except TypeError as error:
         raise TypeError(f"{path}: {error}") from error
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 
 
-def from_dict(content: Mapping[str, Any]) -> Tournament:
+def from_dict(content: Mapping[str, Any], folder: Path = Path()) -> Tournament:
     """The tournament described by plain values, as ``Tournament.to_dict`` tells them.
+
+    Args:
+        content: the values.
+        folder: where its plugins are.
 
     Raises:
         TypeError, ValueError: when something breaks its rule.
@@ -59,10 +68,25 @@ def from_dict(content: Mapping[str, Any]) -> Tournament:
     for key, kind in kinds.items():
         if key in arguments:
             arguments[key] = _build(key, kind, arguments[key])
+    broken = _load_plugins(arguments.pop("plugins", []), folder)
     tables = arguments.pop("entrants", [])
     if not isinstance(tables, list):
         raise TypeError(f"entrants must be a list of tables, got {tables!r}")
-    return Tournament(tuple(one for table in tables for one in _entrants(table)), **arguments)
+    return Tournament(tuple(one for table in tables for one in _entrants(table, broken)), **arguments)
+
+
+def _load_plugins(plugins: Any, folder: Path) -> list[str]:
+    """Load them; what is wrong with those that are broken."""
+    if not isinstance(plugins, list) or not all(isinstance(plugin, str) for plugin in plugins):
+        raise TypeError(f"plugins must be a list of files, got {plugins!r}")
+    broken = []
+    for plugin in plugins:
+        try:
+            load_plugin(folder / plugin)
+        except PluginError as error:
+            broken.append(str(error))
+            _log.warning("%s", error)
+    return broken
 
 
 def _build(name: str, kind: type[Any], table: Any) -> Any:
@@ -74,15 +98,21 @@ def _build(name: str, kind: type[Any], table: Any) -> Any:
     return kind(**table)
 
 
-def _entrants(table: Any) -> Iterator[Entrant]:
+def _entrants(table: Any, broken: list[str]) -> Iterator[Entrant]:
     if not isinstance(table, Mapping):
         raise TypeError(f"each of entrants must be a table, got {table!r}")
     for key in table:
         choice("key of an entrant", key, _ENTRANT_KEYS)
     if "agent" not in table:
         raise ValueError("each of entrants must have an agent")
-    agent = agent_class(table["agent"])
     name = table.get("name", table["agent"])
+    try:
+        agent = agent_class(table["agent"])
+    except ValueError:
+        if not broken:
+            raise
+        yield Entrant(name, Unavailable, agent=str(table["agent"]), reason="; ".join(broken))
+        return
     parameters, over = table.get("parameters", {}), table.get("sweep", {})
     for key, value in (("parameters", parameters), ("sweep", over)):
         if not isinstance(value, Mapping):

@@ -11,8 +11,9 @@ import numpy as np
 
 from agents import agent_name
 from agents.parameters import settle_all
-
-_METHODS = ("act", "learn", "greedy")
+from agents.registry import check_methods
+from arena.freshness import check_fresh, code_digest
+from arena.plugins import PluginSource, source_of
 
 
 @dataclass(frozen=True, init=False)
@@ -34,17 +35,12 @@ class Entrant:
     agent: type[Any]
     parameters: Mapping[str, Any] = field(hash=False)
     given: frozenset[str] = field(compare=False)
+    _code: str = field(compare=False, repr=False)
 
     def __init__(self, name: str, agent: type[Any], /, **parameters: Any) -> None:
         if not isinstance(name, str) or not name.strip() or not name.isprintable():
             raise ValueError(f"name must be a printable text that is not empty, got {name!r}")
-        if not isinstance(agent, type):
-            raise TypeError(f"agent must be a class, got {agent!r}")
-        for method in _METHODS:
-            if not callable(getattr(agent, method, None)):
-                raise TypeError(
-                    f"agent must have the methods {', '.join(_METHODS)}; {agent!r} lacks {method}"
-                )
+        check_methods(agent)
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "agent", agent)
         try:
@@ -55,6 +51,12 @@ class Entrant:
             raise ValueError(f"entrant {name!r}: {error}") from error
         object.__setattr__(self, "parameters", complete)
         object.__setattr__(self, "given", frozenset(parameters))
+        object.__setattr__(self, "_code", code_digest(agent))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        classes = (self.agent, *map(type, self.parameters.values()))
+        parts = (self.name, self.agent, dict(self.parameters), self.given)
+        return _revive, (source_of(*classes), *parts, code_digest(self.agent))
 
     def create(self, task: Any, rng: np.random.Generator) -> Any:
         """The agent, before it has learned anything.
@@ -63,6 +65,7 @@ class Entrant:
             task: the hill.
             rng: handed to ``create`` if it has a parameter of that name.
         """
+        check_fresh(self.agent, self._code)
         maker = getattr(self.agent, "create", None)
         if maker is None:
             return self.agent(**self.parameters)
@@ -107,6 +110,22 @@ def sweep(
         chosen = dict(zip(over, values, strict=True))
         label = " ".join([name, *(_label(key, value) for key, value in chosen.items())])
         yield Entrant(label, agent, **parameters, **chosen)
+
+
+def _revive(
+    _plugins: tuple[PluginSource, ...],
+    name: str,
+    agent: type[Any],
+    parameters: dict[str, Any],
+    given: frozenset[str],
+    code: str,
+) -> Entrant:
+    """What was pickled; the plugins come first, so that the classes of the rest are found."""
+    entrant = object.__new__(Entrant)
+    parts = {"name": name, "agent": agent, "parameters": parameters, "given": given, "_code": code}
+    for key, value in parts.items():
+        object.__setattr__(entrant, key, value)
+    return entrant
 
 
 def plain(value: Any) -> Any:

@@ -65,7 +65,7 @@ def complete(
         ValueError: when an array of the agent has NaN: its scores would mean nothing.
     """
     accuracy, mean_length = score(test_lengths, test_reached)
-    arrays = _agent_arrays(agent)
+    arrays = agent_arrays(agent)
     for name, array in arrays.items():
         if np.issubdtype(array.dtype, np.inexact) and np.isnan(array).any():
             raise ValueError(
@@ -90,7 +90,7 @@ def failed(run: Run, driver: str, error: str, seconds: float = 0.0) -> Outcome:
     return Outcome(run.entrant.name, run.replicate, driver, "failed", seconds=seconds, error=error)
 
 
-def _agent_arrays(agent: Any) -> Arrays:
+def agent_arrays(agent: Any) -> Arrays:
     """The arrays that are fields or attributes of the agent, by name."""
     fields = agent._asdict() if hasattr(agent, "_asdict") else getattr(agent, "__dict__", {})
     return {

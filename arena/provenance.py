@@ -8,6 +8,7 @@ from importlib import metadata
 from typing import Any
 
 from agents import agent_name
+from arena.plugins import source_of
 
 
 def versions() -> dict[str, str]:
@@ -23,11 +24,12 @@ def versions() -> dict[str, str]:
 
 
 def source_digests(agents: Iterable[type[Any]]) -> dict[str, str]:
-    """A hash of each agent's code, by its name; empty where the code cannot be found."""
+    """A hash of each agent's code, of a plugin's whole file, by its name; empty where it is not found."""
     found = {}
     for agent in agents:
+        plugins = source_of(agent)
         try:
-            code = inspect.getsource(agent)
+            code = "".join(plugin.text for plugin in plugins) or inspect.getsource(agent)
         except (OSError, TypeError):  # typed in at a prompt
             code = ""
         found[agent_name(agent)] = hashlib.sha256(code.encode()).hexdigest() if code else ""

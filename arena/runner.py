@@ -15,6 +15,7 @@ import numpy as np
 from arena import compiled_driver, pettingzoo_driver
 from arena.checkpoint import discard, savable
 from arena.claims import Limits
+from arena.freshness import renew_workers
 from arena.outcome import Outcome, failed
 from arena.pool import Task, check_enforceable, imap, survive
 from arena.provenance import source_digests
@@ -69,7 +70,9 @@ def run(
     path = None if out is None else Path(out)
     config = tournament.to_dict()
     resuming = path is not None and path.exists()
-    sources = source_digests({entrant.agent for entrant in tournament.entrants})
+    agents = {entrant.agent for entrant in tournament.entrants}
+    sources = source_digests(agents)
+    renew_workers(agents)
     store = Store.resume(path, config, sources) if path is not None and resuming else None
     done = store.finished() if store else set()
     pending = [r for r in tournament.runs if (r.entrant.name, r.replicate) not in done]

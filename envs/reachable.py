@@ -7,6 +7,7 @@ is compiled in, whatever file, notebook cell or plugin it comes from.
 
 import enum
 import hashlib
+import inspect
 import types
 import typing
 from collections.abc import Callable, Iterator
@@ -83,6 +84,20 @@ class Reached:
                 self._facts.add(f"{_name(function)}: {name} = {_literal(found)}")
             else:
                 self._visit(found)
+
+
+def module_code(module: types.ModuleType) -> str:
+    """A digest of the functions, and the methods of the classes, that ``module`` defines."""
+    found: set[str] = set()
+    pending = [one for one in vars(module).values() if getattr(one, "__module__", "") == module.__name__]
+    while pending:
+        one = inspect.unwrap(pending.pop())
+        if isinstance(one, type):
+            members = (getattr(part, "__func__", getattr(part, "fget", part)) for part in vars(one).values())
+            pending += [part for part in members if isinstance(part, types.FunctionType)]
+        elif isinstance(one, types.FunctionType):
+            found.add(f"{_name(one)}: {_code(one.__code__)}")
+    return hashlib.sha256("\n".join(sorted(found)).encode()).hexdigest()
 
 
 def structure(value: object) -> str:

@@ -85,6 +85,11 @@ class Grid(_Parts):
         """Number of cells."""
         return math.prod(self.bins)
 
+    @property
+    def active(self) -> int:
+        """Features that are active at once: one."""
+        return 1
+
     def encode(self, observation: Observation) -> int:
         """The cell's number in [0, size), last dimension fastest (C order)."""
         cell = 0
@@ -98,6 +103,10 @@ class Grid(_Parts):
                 k += 1
             cell = cell * self.bins[d] + k
         return cell
+
+    def fill(self, observation: Observation, active: NDArray[np.int64]) -> None:
+        """Write the cell as the only active feature."""
+        active[0] = self.encode(observation)
 
 
 def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:

@@ -5,7 +5,7 @@ from agents.policies import best_action
 from agents.tabular import Tabular
 
 
-class QLearning(Tabular):
+class QLearning(Tabular[None]):
     """Off-policy TD control on a grid: learns the value of acting greedily next."""
 
     __slots__ = ()

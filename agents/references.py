@@ -1,4 +1,4 @@
-"""Two drivers that do not learn, to compare the others with."""
+"""Drivers that do not learn, to compare the others with."""
 
 from typing import NamedTuple, Self
 
@@ -38,8 +38,8 @@ class RandomAgent(NamedTuple):
         return int(self.rng.random() * self.n_actions)
 
 
-class MomentumAgent(NamedTuple):
-    """Thrust the way the car moves, right when it stands: energy grows with every step."""
+class FixedAgent(NamedTuple):
+    """Drives the same way always; ``greedy`` of its subclasses says how."""
 
     last_action: int
 
@@ -64,5 +64,32 @@ class MomentumAgent(NamedTuple):
         """Nothing."""
 
     def greedy(self, observation: Observation) -> int:
+        """What to do."""
+        raise NotImplementedError
+
+
+class MomentumAgent(FixedAgent):
+    """Thrust the way the car moves, right when it stands: energy grows with every step."""
+
+    __slots__ = ()
+
+    def greedy(self, observation: Observation) -> int:
         """Right for a velocity of at least 0, else left."""
         return self.last_action if observation[1] >= 0.0 else 0
+
+
+class XiaoAgent(FixedAgent):
+    """Thrust right between two curves of the velocity over the position, else left; never none.
+
+    The closed form of Zhiqing Xiao on the Gymnasium leaderboard: 105.75 steps on average, over
+    100,000 episodes of ``MountainCar-v0``; the curves are made for that hill.
+    """
+
+    __slots__ = ()
+
+    def greedy(self, observation: Observation) -> int:
+        """Right if the velocity is between the curves."""
+        x, v = observation[0], observation[1]
+        lower = min(-0.09 * (x + 0.25) ** 2 + 0.03, 0.3 * (x + 0.9) ** 4 - 0.008)
+        upper = -0.07 * (x + 0.38) ** 2 + 0.07
+        return self.last_action if lower < v < upper else 0

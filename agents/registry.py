@@ -10,9 +10,21 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from agents.double_q_learning import DoubleQLearning
+from agents.dyna_q import DynaQ
+from agents.expected_sarsa import ExpectedSarsa
+from agents.monte_carlo import MonteCarlo
+from agents.n_step_sarsa import NStepSarsa
+from agents.prioritized_sweeping import PrioritizedSweeping
 from agents.q_learning import QLearning
-from agents.references import MomentumAgent, RandomAgent
+from agents.r_max import RMax
+from agents.references import MomentumAgent, RandomAgent, XiaoAgent
 from agents.sarsa import Sarsa
+from agents.sarsa_lambda import SarsaLambda
+from agents.semi_gradient_sarsa import SemiGradientSarsa
+from agents.true_online_sarsa import TrueOnlineSarsa
+from agents.tutorial import TutorialQLearning
+from agents.watkins_q_lambda import WatkinsQLambda
 from envs.checks import choice
 
 GROUP = "arena.agents"
@@ -20,6 +32,19 @@ GROUP = "arena.agents"
 BUILT_IN: dict[str, type[Any]] = {
     "q-learning": QLearning,
     "sarsa": Sarsa,
+    "expected-sarsa": ExpectedSarsa,
+    "double-q-learning": DoubleQLearning,
+    "n-step-sarsa": NStepSarsa,
+    "monte-carlo": MonteCarlo,
+    "dyna-q": DynaQ,
+    "prioritized-sweeping": PrioritizedSweeping,
+    "r-max": RMax,
+    "semi-gradient-sarsa": SemiGradientSarsa,
+    "sarsa-lambda": SarsaLambda,
+    "true-online-sarsa": TrueOnlineSarsa,
+    "watkins-q-lambda": WatkinsQLambda,
+    "tutorial": TutorialQLearning,
+    "xiao": XiaoAgent,
     "random": RandomAgent,
     "momentum": MomentumAgent,
 }
@@ -61,6 +86,12 @@ def register(name: str, agent: type[Any], origin: str = "registered by a script"
     if taken and taken.origin != origin:
         raise ValueError(f"agent {name!r} of {origin} has a name that is taken: {taken.origin}")
     _registered[name] = Registered(name, agent, origin)
+
+
+def forget(origin: str) -> None:
+    """Make unknown what ``origin`` has registered."""
+    for name in [name for name, entry in _registered.items() if entry.origin == origin]:
+        del _registered[name]
 
 
 def all_agents() -> tuple[dict[str, Registered], list[str]]:
@@ -134,8 +165,11 @@ def _installed() -> tuple[dict[str, Registered], tuple[str, ...]]:
         try:
             agent = entry.load()
             check_methods(agent)
-        except Exception as error:  # whatever the package raises
-            broken.append(f"agent {entry.name!r} of {origin} is broken: {type(error).__name__}: {error}")
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # whatever the package raises; sys.exit, too
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            broken.append(f"agent {entry.name!r} of {origin} is broken: {reason}")
             continue
         if entry.name in BUILT_IN or entry.name in found:
             taken = found[entry.name].origin if entry.name in found else "built in"

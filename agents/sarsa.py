@@ -4,7 +4,7 @@ from agents.contract import Observation
 from agents.tabular import Tabular
 
 
-class Sarsa(Tabular):
+class Sarsa(Tabular[None]):
     """On-policy TD control on a grid: learns the value of what it does next, exploration included."""
 
     __slots__ = ()

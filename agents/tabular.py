@@ -1,6 +1,6 @@
 """A table of action values over the cells of a grid, and how the agent explores."""
 
-from typing import Literal, NamedTuple, Self
+from typing import Generic, Literal, NamedTuple, Self, TypeVar, cast
 
 import numpy as np
 
@@ -13,12 +13,20 @@ from agents.schedules import HarmonicRate, LinearDecay
 from agents.updates import Update, make_update
 from envs.checks import number
 
+Memory = TypeVar("Memory")
 
-class Tabular(NamedTuple):
-    """What Q-learning and SARSA share (paper, section 4): everything but ``learn``.
+OF_THE_UPDATE = ("step_size", "count_visits", "goal")
+"""Parameters without a use for agents that compute their values from a model."""
+
+
+class Tabular(NamedTuple, Generic[Memory]):
+    """What Q-learning, SARSA and their kin share (paper, section 4): everything but ``learn``.
 
     ``values`` and ``visits`` have shape (cells, actions); ``visits`` counts every time that an
     action was taken in a cell. Among equal values the lowest action is the greedy one.
+
+    Attributes:
+        memory: what else the agent keeps; None for one that needs no more.
     """
 
     cells: Cells
@@ -26,6 +34,7 @@ class Tabular(NamedTuple):
     visits: Counts
     update: Update
     policy: Exploration
+    memory: Memory
 
     @classmethod
     @validated
@@ -73,6 +82,7 @@ class Tabular(NamedTuple):
             np.zeros(shape, np.int64),
             make_update(shape, rate, discount, count_visits, goal),
             make_exploration(epsilon, explore),
+            cast("Memory", None),  # an agent with more to keep puts it here
         )
 
     def begin_episode(self) -> None:

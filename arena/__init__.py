@@ -1,6 +1,6 @@
 """The arena: entrants learn on one hill, and their scores say who drives best."""
 
-from arena.builtin import paper, quick
+from arena.builtin import field, paper, quick
 from arena.entrant import Entrant, sweep
 from arena.plugins import load_plugin
 from arena.results import Results, load
@@ -13,6 +13,7 @@ __all__ = [
     "Results",
     "Tournament",
     "Training",
+    "field",
     "load",
     "load_plugin",
     "paper",

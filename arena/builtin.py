@@ -1,8 +1,10 @@
 """The tournaments that need no file: the paper's, and a quick one."""
 
 from collections.abc import Callable
+from importlib.resources import as_file, files
 
 from agents import HarmonicRate, MomentumAgent, QLearning, RandomAgent, Sarsa
+from arena.configuration import load_tournament
 from arena.entrant import Entrant, sweep
 from arena.tournament import Evaluation, Tournament, Training
 
@@ -38,4 +40,10 @@ def quick(replicates: int = 3, seed: int = 0, reading: str = "literal") -> Tourn
     )
 
 
-BUILT_IN: dict[str, Callable[..., Tournament]] = {"paper": paper, "quick": quick}
+def field(replicates: int = 10, seed: int = 0, reading: str = "literal") -> Tournament:
+    """All kinds of agents, with the parameters that the search of ``scripts/tune_field.py`` found."""
+    with as_file(files("arena") / "data" / "field.toml") as path:
+        return load_tournament(path, replicates=replicates, seed=seed, reading=reading)
+
+
+BUILT_IN: dict[str, Callable[..., Tournament]] = {"paper": paper, "quick": quick, "field": field}

@@ -49,7 +49,8 @@ class Driver(StrEnum):
 @app.command()
 def run(
     tournament: Annotated[
-        str, typer.Argument(help="paper, quick, or a TOML file.", metavar="paper|quick|FILE.toml")
+        str,
+        typer.Argument(help="paper, quick, field, or a TOML file.", metavar="paper|quick|field|FILE.toml"),
     ],
     out: Annotated[
         Path | None,

@@ -78,7 +78,7 @@ def check_saves_and_loads(entrant: Entrant) -> None:
     with tempfile.TemporaryDirectory() as folder:
         conditions = Conditions(_HILL, _CONDITIONS.training, _CONDITIONS.evaluation, 7, folder)
         checkpoint_of(conditions, Run(entrant, 0), agent).save(1)
-        restored = _create(entrant, seed=8)
+        restored = _create(entrant)
         checkpoint_of(conditions, Run(entrant, 0), restored).restore()
     for observation in _observations():
         _hold(

@@ -6,6 +6,7 @@ this process and in warm workers, and its machine code is cached like any other'
 
 import hashlib
 import linecache
+import os
 import re
 import sys
 import types
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from agents.registry import register
+from agents.registry import forget, register
 
 
 class PluginError(ValueError):
@@ -58,7 +59,7 @@ def load_plugin(path: str | Path) -> dict[str, type[Any]]:
     """Load the agents that the file ``path`` defines, and make them known by name.
 
     An agent is a class, defined there and public, with the methods of ``agents.Agent``. ``SpeedSeeker``
-    is called ``speed-seeker``.
+    is called ``speed-seeker``. What the file defined before it was edited is forgotten.
 
     Returns:
         The classes by name.
@@ -67,6 +68,8 @@ def load_plugin(path: str | Path) -> dict[str, type[Any]]:
         PluginError: when the file cannot be read or run, or defines no agent or a bad one.
     """
     path = Path(path)
+    origin = f"plugin {os.path.realpath(path)}"
+    forget(origin)
     source = _read(path)
     try:
         module = source.load()
@@ -74,15 +77,22 @@ def load_plugin(path: str | Path) -> dict[str, type[Any]]:
         raise
     except BaseException as error:  # whatever its code raises; sys.exit, too
         raise PluginError(f"plugin {path}{_place(error, source.path)}: {_reason(error)}") from error
-    found = {
-        _kebab(cls.__name__): cls for cls in vars(module).values() if _meant_as_agent(cls, source.module)
-    }
+    found: dict[str, type[Any]] = {}
+    for cls in vars(module).values():
+        if _meant_as_agent(cls, source.module):
+            other = found.setdefault(_kebab(cls.__name__), cls)
+            if other is not cls:
+                raise PluginError(
+                    f"plugin {path}: {other.__name__} and {cls.__name__} would both be called "
+                    f"{_kebab(cls.__name__)!r}"
+                )
     if not found:
         raise PluginError(f"plugin {path} defines no agent: a class with the methods act, learn and greedy")
     for name, cls in found.items():
         try:
-            register(name, cls, f"plugin {path.resolve()}")
+            register(name, cls, origin)
         except (TypeError, ValueError) as error:
+            forget(origin)  # all of it or nothing
             raise PluginError(f"plugin {path}: {error}") from error
     return found
 
@@ -128,7 +138,7 @@ def _revive(module: str, path: str, text: str) -> PluginSource:
 
 def _read(path: Path) -> PluginSource:
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except FileNotFoundError:
         raise PluginError(f"there is no plugin file {path}") from None
     except (OSError, UnicodeDecodeError) as error:
@@ -147,9 +157,10 @@ def _meant_as_agent(cls: Any, module: str) -> bool:
 
 def _place(error: BaseException, path: str) -> str:
     """The line of the plugin where it went wrong."""
-    line = error.lineno if isinstance(error, SyntaxError) else None
-    trace = error.__traceback__
-    while trace and not isinstance(error, SyntaxError):
+    if isinstance(error, SyntaxError) and error.filename == path:
+        return f", line {error.lineno}"
+    line, trace = 0, error.__traceback__
+    while trace:
         if trace.tb_frame.f_code.co_filename == path:
             line = trace.tb_lineno
         trace = trace.tb_next
@@ -157,7 +168,7 @@ def _place(error: BaseException, path: str) -> str:
 
 
 def _reason(error: BaseException) -> str:
-    text = error.msg if isinstance(error, SyntaxError) else str(error)
+    text = " ".join((error.msg if isinstance(error, SyntaxError) else str(error)).split())
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 

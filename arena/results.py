@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SCORES = ("accuracy", "mean_length", "iterations", "seconds", "driver", "status")
+_COLUMNS = ("accuracy", "mean_length", "steps", "iterations", "seconds", "driver", "status")
 
 
 class Results:
@@ -41,7 +42,12 @@ class Results:
 
     @property
     def runs(self) -> list[dict[str, Any]]:
-        """One dictionary a run, entrants in the tournament's order; plain values, NaN as None."""
+        """One dictionary a run, entrants in the tournament's order; plain values, NaN as None.
+
+        To the scores of the paper it adds ``steps``: of all test episodes, those that failed counted at
+        the limit.
+        """
+        limit = self.config["evaluation"]["max_steps"]
         entrants = {entrant["name"]: entrant for entrant in self.config["entrants"]}
         return [
             {
@@ -50,6 +56,7 @@ class Results:
                 "parameters": entrants[row["entrant"]]["parameters"],
                 "replicate": row["replicate"],
                 **plain_scores(row),
+                "steps": _steps(row["accuracy"], row["mean_length"], limit),
                 **({"error": row["error"]} if row["error"] else {}),
             }
             for row in self._store.rows()
@@ -69,13 +76,13 @@ class Results:
                 "agent": run["agent"],
                 **{name: _cell(run["parameters"].get(name)) for name in names},
                 "replicate": run["replicate"],
-                **{name: run[name] for name in SCORES},
+                **{name: run[name] for name in _COLUMNS},
             }
             for run in self.runs
         ]
-        columns = ["entrant", "agent", *names, "replicate", *SCORES]
+        columns = ["entrant", "agent", *names, "replicate", *_COLUMNS]
         frame = pd.DataFrame(rows, columns=columns)
-        return frame.astype({"accuracy": float, "mean_length": float, "seconds": float})
+        return frame.astype(dict.fromkeys(("accuracy", "mean_length", "steps", "seconds"), float))
 
     def arrays(self, entrant: str, replicate: int = 0) -> Arrays:
         """The arrays of a run, by name.
@@ -124,6 +131,14 @@ def plain_scores(row: Mapping[str, Any]) -> dict[str, Any]:
 
 def _none(value: Any) -> Any:
     return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _steps(accuracy: float, mean_length: float, limit: int) -> float | None:
+    """Mean steps, those that failed counted at the limit; None for a run that did not finish."""
+    if math.isnan(accuracy):
+        return None
+    share = accuracy / 100.0
+    return share * (0.0 if share == 0.0 else mean_length) + (1.0 - share) * limit
 
 
 def _cell(value: Any) -> Any:

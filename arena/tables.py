@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from rich import box
 from rich.console import Group, RenderableType
@@ -34,16 +35,32 @@ def _heading(results: Results) -> str:
 
 
 def _entrants(results: Results) -> RenderableType:
-    table = _table("", "entrant", "accuracy %", "length", "iterations", "driver")
-    runs = results.runs
-    for name in dict.fromkeys(run["entrant"] for run in runs):
-        own = [run for run in runs if run["entrant"] == name and run["status"] == "finished"]
-        columns = [
-            _interval(*mean_interval(math.nan if run[score] is None else run[score] for run in own), places)
+    """One line an entrant, who needs the fewest steps first."""
+    finished: dict[str, list[dict[str, Any]]] = {one["name"]: [] for one in results.config["entrants"]}
+    for run in results.runs:
+        if run["status"] == "finished":
+            finished[run["entrant"]].append(run)
+
+    def interval(name: str, score: str) -> tuple[float, float]:
+        return mean_interval(math.nan if run[score] is None else run[score] for run in finished[name])
+
+    def steps(name: str) -> float:
+        mean, _ = interval(name, "steps")
+        return math.inf if math.isnan(mean) else mean
+
+    table = _table("", "entrant", "accuracy %", "length", "iterations")
+    for name in sorted(finished, key=steps):
+        accuracy, length, iterations = (
+            _interval(*interval(name, score), places)
             for score, places in (("accuracy", 1), ("mean_length", 1), ("iterations", 0))
-        ]
-        table.add_row(Text(name), *columns, ", ".join(sorted({run["driver"] for run in own})))
-    return table
+        )
+        table.add_row(Text(name), accuracy, length, iterations)
+    limit = results.config["evaluation"]["max_steps"]
+    notes = [f"In the order of the mean steps, those of a failed episode counted as {limit}."]
+    interpreted = [name for name, runs in finished.items() if any(r["driver"] != "compiled" for r in runs)]
+    if interpreted:
+        notes.append(f"Driven interpreted, in the PettingZoo environment: {', '.join(interpreted)}.")
+    return Group(table, *map(Text, notes))
 
 
 def _paper(comparison: Comparison) -> RenderableType:

@@ -1,7 +1,10 @@
 """What ``arena new-agent`` writes: an agent that runs at once, and its test."""
 
 import re
+from importlib.util import find_spec
 from pathlib import Path
+
+from agents.registry import BUILT_IN
 
 AGENT = '''"""{title}: say here where the algorithm comes from."""
 
@@ -82,7 +85,7 @@ def write(name: str, folder: Path) -> tuple[Path, Path]:
         folder: is made if it is not there.
 
     Raises:
-        ValueError: when the name is bad, or a file is there already.
+        ValueError: when the name is bad or taken, or a file is there already.
     """
     words = re.split("[-_]", name)
     if not all(re.fullmatch("[a-z][a-z0-9]*", word) for word in words):
@@ -97,6 +100,8 @@ def write(name: str, folder: Path) -> tuple[Path, Path]:
     for path in files:
         if path.exists():
             raise ValueError(f"{path} is there already")
+    if name in BUILT_IN or name == "grid" or find_spec(module):
+        raise ValueError(f"NAME must not be that of a built-in agent or of a Python module, got {name!r}")
     folder.mkdir(parents=True, exist_ok=True)
     for path, text in zip(files, (AGENT, TEST), strict=True):
         path.write_text(text.format(**parts), encoding="utf-8")

@@ -107,7 +107,7 @@ def test_a_small_paper_prints_both_tables(race: str, capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["run"], "Missing argument 'paper|quick|FILE.toml'"),
+        (["run"], "Missing argument 'paper|quick|field|FILE.toml'"),
         (["run", "papr"], "tournament must be one of paper, quick, or a file that ends in .toml, got 'papr'"),
         (["run", "none.toml"], "there is no tournament file none.toml"),
         (["run", "bad.toml"], "bad.toml is not a TOML file"),

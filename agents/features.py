@@ -8,17 +8,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from agents.cells import Binning, Bins, Cells, make_cells
 from agents.contract import Task
-from agents.grid import Grid
 from agents.parameters import Count
 from agents.tile_coding import TileCoding
 
 Tiles = Count | Sequence[Count]
-Features = Grid | TileCoding
+Features = Cells | TileCoding
 
 
 def make_features(
-    task: Task, tilings: Count, tiles: Tiles, bins: Tiles | None, rng: np.random.Generator | None
+    task: Task,
+    tilings: int,
+    tiles: Tiles,
+    bins: Bins | None,
+    binning: Binning,
+    rng: np.random.Generator | None,
 ) -> Features:
     """The features that an agent's parameters describe.
 
@@ -26,10 +31,13 @@ def make_features(
         task: the hill.
         tilings: number of displaced grids.
         tiles: tiles of each grid along the range of each dimension.
-        bins: cells of one uniform grid, in place of tiles; None: tiles.
-        rng: the run's; neither kind draws from it.
+        bins: cells in place of tiles, see ``agents.cells.make_cells``; None: tiles.
+        binning: of the cells.
+        rng: for cells that are learned.
 
     Raises:
         TypeError, ValueError: when one of them breaks its rule.
     """
-    return TileCoding.over(task, tilings, tiles) if bins is None else Grid.over(task, bins)
+    if bins is None:
+        return TileCoding.over(task, tilings, tiles)
+    return make_cells(task, bins, binning, rng)

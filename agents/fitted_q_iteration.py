@@ -1,6 +1,6 @@
 """Fitted Q iteration with extremely randomized trees: Ernst, Geurts & Wehenkel 2005."""
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,10 +83,27 @@ class FittedQIteration:
     ) -> Self:
         decay = epsilon if isinstance(epsilon, LinearDecay) else LinearDecay(epsilon, epsilon)
         shape = (memory, len(task.low))
-        batch = Batch(np.zeros(shape), np.zeros(memory, np.int64), np.zeros(memory), np.zeros(shape), np.zeros(memory, np.bool_))
+        batch = Batch(
+            np.zeros(shape),
+            np.zeros(memory, np.int64),
+            np.zeros(memory),
+            np.zeros(shape),
+            np.zeros(memory, np.bool_),
+        )
         forest = {"n_estimators": trees, "min_samples_leaf": leaf}
         cells = Grid.over(task, resolution)
-        return cls(task, cells, batch, discount, decay, hold, every, iterations, forest, rng or np.random.default_rng())
+        return cls(
+            task,
+            cells,
+            batch,
+            discount,
+            decay,
+            hold,
+            every,
+            iterations,
+            forest,
+            rng or np.random.default_rng(),
+        )
 
     def begin_episode(self) -> None:
         if self.episodes > 0 and self.episodes % self.every == 0:
@@ -121,8 +138,10 @@ class FittedQIteration:
 
     def fit(self) -> None:
         import time
+
         t = time.time()
         from sklearn.ensemble import ExtraTreesRegressor
+
         n = min(self.steps, len(self.batch.actions))
         b = Batch(*(x[:n] for x in self.batch))
         following = np.zeros(n)
@@ -136,6 +155,6 @@ class FittedQIteration:
             following = np.max([f.predict(b.next_observations) for f in forests], axis=0)
         lo, hi = np.array(self.cells.low), np.array(self.cells.high)
         k = np.stack(np.unravel_index(np.arange(self.cells.size), self.cells.bins), 1)
-        centres = lo + (k + .5) * (hi - lo) / np.array(self.cells.bins)
+        centres = lo + (k + 0.5) * (hi - lo) / np.array(self.cells.bins)
         self.values[:] = np.stack([f.predict(centres) for f in forests], 1)
-        print(f"   fit {n} {time.time()-t:.1f}s", end="")
+        print(f"   fit {n} {time.time() - t:.1f}s", end="")

@@ -1,19 +1,19 @@
 """Action values linear in binary features, driven epsilon-greedily (Sutton & Barto 2018, 9.5, 10.1)."""
 
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, NamedTuple, Self, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from agents.cells import Binning, Bins
 from agents.contract import Observation, Task
-from agents.features import Features
+from agents.features import Features, Tiles, make_features
+from agents.parameters import Count, Positive, Probability, validated
 from agents.policies import Table
 from agents.schedules import LinearDecay
 
 Active = NDArray[np.int64]
 Memory = TypeVar("Memory")
-
-_Common = tuple[Features, Table, float, float, LinearDecay, "Scratch"]
 
 
 class Scratch(NamedTuple):
@@ -24,7 +24,7 @@ class Scratch(NamedTuple):
 
 
 class Linear(NamedTuple, Generic[Memory]):
-    """What the linear agents share: everything but ``create`` and ``learn``.
+    """What the linear agents share: everything but ``learn``.
 
     The value of an action is the sum of the weights of the active features; ``weights`` has shape
     (features, actions).
@@ -42,6 +42,48 @@ class Linear(NamedTuple, Generic[Memory]):
     scratch: Scratch
     memory: Memory
 
+    @classmethod
+    @validated
+    def create(
+        cls,
+        task: Task,
+        *,
+        tilings: Count = 8,
+        tiles: Tiles = 8,
+        bins: Bins | None = None,
+        binning: Binning = "uniform",
+        step_size: Positive = 0.5,
+        discount: Probability = 1.0,
+        epsilon: LinearDecay | Probability = LinearDecay(0.0, 0.0),  # noqa: B008 (immutable)
+        rng: np.random.Generator | None = None,
+    ) -> Self:
+        """The agent before it has learned anything; the defaults are the book's.
+
+        Args:
+            task: the hill.
+            tilings: number of displaced grids of tiles.
+            tiles: tiles of each along the range of each dimension.
+            bins: cells in place of tiles, or their edges; see ``agents.cells.make_cells``.
+            binning: of the cells: ``"uniform"``, ``"quantile"`` or ``"kmeans"``.
+            step_size: alpha times the number of active features: 0.5 is the book's 0.5/8.
+            discount: gamma, in [0, 1].
+            epsilon: share of random actions; 0 explores as well, for weights of 0 are optimistic.
+            rng: for cells that are learned.
+
+        Raises:
+            TypeError, ValueError: when a parameter breaks its rule.
+        """
+        features = make_features(task, tilings, tiles, bins, binning, rng)
+        return cls(
+            features,
+            np.zeros((features.size, task.n_actions)),
+            step_size / features.active,
+            discount,
+            epsilon if isinstance(epsilon, LinearDecay) else LinearDecay(epsilon, epsilon),
+            Scratch(np.zeros(features.active, np.int64), np.zeros(features.active, np.int64)),
+            cast("Memory", None),  # an agent with more to keep puts it here
+        )
+
     def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
         """Epsilon-greedy, equal values broken at random."""
         active = self.scratch.here
@@ -53,16 +95,6 @@ class Linear(NamedTuple, Generic[Memory]):
         active = self.scratch.here
         self.features.fill(observation, active)
         return best_action_of(self.weights, active)
-
-
-def common_parts(
-    task: Task, features: Features, step_size: float, discount: float, epsilon: LinearDecay | float
-) -> _Common:
-    """The first fields of ``Linear``, before anything is learned: all weights are 0."""
-    decay = epsilon if isinstance(epsilon, LinearDecay) else LinearDecay(epsilon, epsilon)
-    weights = np.zeros((features.size, task.n_actions))
-    scratch = Scratch(np.zeros(features.active, np.int64), np.zeros(features.active, np.int64))
-    return features, weights, step_size / features.active, discount, decay, scratch
 
 
 def value_of(weights: Table, active: Active, action: int) -> float:

@@ -1,14 +1,13 @@
 """Sarsa(lambda) with binary features: Sutton & Barto 2018, 12.7; Singh & Sutton 1996."""
 
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 
 from agents.contract import Observation, Task
-from agents.features import Tiles, make_features
-from agents.linear import Linear, common_parts, value_of
-from agents.parameters import Count, Positive, Probability, validated
-from agents.schedules import LinearDecay
+from agents.inheritance import inherits
+from agents.linear import Linear, value_of
+from agents.parameters import Probability, validated
 from agents.traces import Kind, Traces
 
 
@@ -19,6 +18,7 @@ class SarsaLambda(Linear[Traces]):
 
     @classmethod
     @validated
+    @inherits(Linear.create)
     def create(
         cls,
         task: Task,
@@ -26,13 +26,8 @@ class SarsaLambda(Linear[Traces]):
         trace_decay: Probability = 0.9,
         traces: Literal["accumulating", "replacing"] = "replacing",
         clear_others: bool = False,
-        tilings: Count = 8,
-        tiles: Tiles = 8,
-        bins: Tiles | None = None,
-        step_size: Positive = 0.5,
-        discount: Probability = 1.0,
-        epsilon: LinearDecay | Probability = LinearDecay(0.0, 0.0),  # noqa: B008 (immutable)
         rng: np.random.Generator | None = None,
+        **inherited: Any,
     ) -> Self:
         """The agent before it has learned anything.
 
@@ -41,22 +36,15 @@ class SarsaLambda(Linear[Traces]):
             trace_decay: lambda, in [0, 1].
             traces: ``"accumulating"``: a visit adds 1; ``"replacing"``: it sets to 1.
             clear_others: whether a visit also removes the traces of the actions not taken there.
-            tilings: number of displaced grids of tiles.
-            tiles: tiles of each along the range of each dimension.
-            bins: cells of a uniform grid in place of tiles.
-            step_size: alpha times the number of active features: 0.5 is the book's 0.5/8.
-            discount: gamma, in [0, 1].
-            epsilon: share of random actions; 0 explores as well, for weights of 0 are optimistic.
-            rng: for features that are drawn.
+            rng: for cells that are learned.
+            inherited: see ``Linear.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        parts = common_parts(
-            task, make_features(task, tilings, tiles, bins, rng), step_size, discount, epsilon
-        )
-        kind = Kind[traces.upper()]
-        return cls(*parts, Traces.of(parts[1], kind, discount * trace_decay, clear_others=clear_others))
+        table: Linear[None] = Linear.create(task, rng=rng, **inherited)
+        kind, decay = Kind[traces.upper()], table.discount * trace_decay
+        return cls(*table[:-1], Traces.of(table.weights, kind, decay, clear_others=clear_others))
 
     def begin_episode(self) -> None:
         """Forget the traces of the episode before."""

@@ -1,15 +1,14 @@
 """Semi-gradient n-step Sarsa: Sutton & Barto 2018, 10.1 (n = 1) and 10.2."""
 
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from agents.contract import Observation, Task
-from agents.features import Tiles, make_features
-from agents.linear import Linear, add, common_parts, value_of
-from agents.parameters import Count, Positive, Probability, validated
-from agents.schedules import LinearDecay
+from agents.inheritance import inherits
+from agents.linear import Linear, add, value_of
+from agents.parameters import Count, validated
 
 
 class Steps(NamedTuple):
@@ -41,43 +40,34 @@ class SemiGradientSarsa(Linear[Steps]):
 
     @classmethod
     @validated
+    @inherits(Linear.create)
     def create(
         cls,
         task: Task,
         *,
         n: Count = 1,
-        tilings: Count = 8,
-        tiles: Tiles = 8,
-        bins: Tiles | None = None,
-        step_size: Positive = 0.5,
-        discount: Probability = 1.0,
-        epsilon: LinearDecay | Probability = LinearDecay(0.0, 0.0),  # noqa: B008 (immutable)
         rng: np.random.Generator | None = None,
+        **inherited: Any,
     ) -> Self:
-        """The agent before it has learned anything; the defaults are those of the book's Figure 10.2.
+        """The agent before it has learned anything.
 
         Args:
             task: the hill.
             n: steps until an estimated value takes the place of rewards.
-            tilings: number of displaced grids of tiles.
-            tiles: tiles of each along the range of each dimension.
-            bins: cells of a uniform grid in place of tiles.
-            step_size: alpha times the number of active features: 0.5 is the book's 0.5/8.
-            discount: gamma, in [0, 1].
-            epsilon: share of random actions; 0 explores as well, for weights of 0 are optimistic.
-            rng: for features that are drawn.
+            rng: for cells that are learned.
+            inherited: see ``Linear.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        features = make_features(task, tilings, tiles, bins, rng)
+        table: Linear[None] = Linear.create(task, rng=rng, **inherited)
         steps = Steps(
-            np.zeros((n + 1, features.active), np.int64),
+            np.zeros((n + 1, table.features.active), np.int64),
             np.zeros(n + 1, np.int64),
             np.zeros(n + 1),
             np.zeros(2, np.int64),
         )
-        return cls(*common_parts(task, features, step_size, discount, epsilon), steps)
+        return cls(*table[:-1], steps)
 
     def begin_episode(self) -> None:
         """Learn what a time limit left over."""

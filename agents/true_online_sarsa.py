@@ -1,15 +1,14 @@
 """True online Sarsa(lambda): van Seijen & Sutton 2014; Sutton & Barto 2018, 12.7."""
 
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from agents.contract import Observation, Task
-from agents.features import Tiles, make_features
-from agents.linear import Linear, add, common_parts, value_of
-from agents.parameters import Count, Positive, Probability, validated
-from agents.schedules import LinearDecay
+from agents.inheritance import inherits
+from agents.linear import Linear, add, value_of
+from agents.parameters import Probability, validated
 from agents.traces import Kind, Traces
 
 
@@ -27,39 +26,29 @@ class TrueOnlineSarsa(Linear[Memory]):
 
     @classmethod
     @validated
+    @inherits(Linear.create)
     def create(
         cls,
         task: Task,
         *,
         trace_decay: Probability = 0.9,
-        tilings: Count = 8,
-        tiles: Tiles = 8,
-        bins: Tiles | None = None,
-        step_size: Positive = 0.5,
-        discount: Probability = 1.0,
-        epsilon: LinearDecay | Probability = LinearDecay(0.0, 0.0),  # noqa: B008 (immutable)
         rng: np.random.Generator | None = None,
+        **inherited: Any,
     ) -> Self:
         """The agent before it has learned anything.
 
         Args:
             task: the hill.
             trace_decay: lambda, in [0, 1].
-            tilings: number of displaced grids of tiles.
-            tiles: tiles of each along the range of each dimension.
-            bins: cells of a uniform grid in place of tiles.
-            step_size: alpha times the number of active features: 0.5 is the book's 0.5/8.
-            discount: gamma, in [0, 1].
-            epsilon: share of random actions; 0 explores as well, for weights of 0 are optimistic.
-            rng: for features that are drawn.
+            rng: for cells that are learned.
+            inherited: see ``Linear.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        parts = common_parts(
-            task, make_features(task, tilings, tiles, bins, rng), step_size, discount, epsilon
-        )
-        return cls(*parts, Memory(Traces.of(parts[1], Kind.DUTCH, discount * trace_decay), np.zeros(1)))
+        table: Linear[None] = Linear.create(task, rng=rng, **inherited)
+        traces = Traces.of(table.weights, Kind.DUTCH, table.discount * trace_decay)
+        return cls(*table[:-1], Memory(traces, np.zeros(1)))
 
     def begin_episode(self) -> None:
         """Forget the episode before."""

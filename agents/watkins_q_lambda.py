@@ -1,14 +1,13 @@
 """Watkins's Q(lambda) with binary features: Watkins 1989; Sutton & Barto 1998, 7.6 and 8.3; 2018, 12.10."""
 
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 
 from agents.contract import Observation, Task
-from agents.features import Tiles, make_features
-from agents.linear import Linear, best_action_of, common_parts, value_of
-from agents.parameters import Count, Positive, Probability, validated
-from agents.schedules import LinearDecay
+from agents.inheritance import inherits
+from agents.linear import Linear, best_action_of, value_of
+from agents.parameters import Probability, validated
 from agents.traces import Kind, Traces
 
 
@@ -22,19 +21,15 @@ class WatkinsQLambda(Linear[Traces]):
 
     @classmethod
     @validated
+    @inherits(Linear.create)
     def create(
         cls,
         task: Task,
         *,
         trace_decay: Probability = 0.9,
         traces: Literal["accumulating", "replacing"] = "replacing",
-        tilings: Count = 8,
-        tiles: Tiles = 8,
-        bins: Tiles | None = None,
-        step_size: Positive = 0.5,
-        discount: Probability = 1.0,
-        epsilon: LinearDecay | Probability = LinearDecay(0.0, 0.0),  # noqa: B008 (immutable)
         rng: np.random.Generator | None = None,
+        **inherited: Any,
     ) -> Self:
         """The agent before it has learned anything.
 
@@ -42,21 +37,15 @@ class WatkinsQLambda(Linear[Traces]):
             task: the hill.
             trace_decay: lambda, in [0, 1].
             traces: ``"accumulating"``: a visit adds 1; ``"replacing"``: it sets to 1.
-            tilings: number of displaced grids of tiles.
-            tiles: tiles of each along the range of each dimension.
-            bins: cells of a uniform grid in place of tiles.
-            step_size: alpha times the number of active features: 0.5 is the book's 0.5/8.
-            discount: gamma, in [0, 1].
-            epsilon: share of random actions; 0 explores as well, for weights of 0 are optimistic.
-            rng: for features that are drawn.
+            rng: for cells that are learned.
+            inherited: see ``Linear.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        parts = common_parts(
-            task, make_features(task, tilings, tiles, bins, rng), step_size, discount, epsilon
-        )
-        return cls(*parts, Traces.of(parts[1], Kind[traces.upper()], discount * trace_decay))
+        table: Linear[None] = Linear.create(task, rng=rng, **inherited)
+        kind, decay = Kind[traces.upper()], table.discount * trace_decay
+        return cls(*table[:-1], Traces.of(table.weights, kind, decay))
 
     def begin_episode(self) -> None:
         """Forget the traces of the episode before."""

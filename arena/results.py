@@ -133,9 +133,9 @@ def _none(value: Any) -> Any:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
-def _steps(accuracy: float, mean_length: float, limit: int) -> float | None:
+def _steps(accuracy: float | None, mean_length: float, limit: int) -> float | None:
     """Mean steps, those that failed counted at the limit; None for a run that did not finish."""
-    if math.isnan(accuracy):
+    if accuracy is None or math.isnan(accuracy):
         return None
     share = accuracy / 100.0
     return share * (0.0 if share == 0.0 else mean_length) + (1.0 - share) * limit

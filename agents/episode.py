@@ -41,9 +41,8 @@ class Steps(NamedTuple):
         self.now[1] = min(self.now[1] + 1, last)
 
     def back(self, steps: int) -> int:
-        """The place of the step so many before the one to come; 1 is the newest."""
-        place = self.now[0] - steps
-        return place if place >= 0 else place + self.cells.shape[0]  # type: ignore[no-any-return]
+        """The place of the step so many before the one to come, from the end if below 0; 1 is the newest."""
+        return self.now[0] - steps  # type: ignore[no-any-return]
 
 
 def returned(reward: float, following: float, terminated: bool, update: Update) -> float:

@@ -90,6 +90,7 @@ class XiaoAgent(FixedAgent):
     def greedy(self, observation: Observation) -> int:
         """Right if the velocity is between the curves."""
         x, v = observation[0], observation[1]
-        lower = min(-0.09 * (x + 0.25) ** 2 + 0.03, 0.3 * (x + 0.9) ** 4 - 0.008)
-        upper = -0.07 * (x + 0.38) ** 2 + 0.07
-        return self.last_action if lower < v < upper else 0
+        # Products in place of powers: compiled and interpreted, they are the same bits.
+        low, steep, high = (x + 0.25) * (x + 0.25), (x + 0.9) * (x + 0.9), (x + 0.38) * (x + 0.38)
+        least = min(-0.09 * low + 0.03, 0.3 * steep * steep - 0.008)
+        return self.last_action if least < v < -0.07 * high + 0.07 else 0

@@ -1,10 +1,10 @@
 """The command ``arena``. Progress and errors go to stderr, results to stdout."""
 
-import json
 import re
 import shlex
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,8 +12,11 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from arena.adaptive import ADAPTIVE
 from arena.builtin import BUILT_IN
 from arena.cli_agents import Plugins, add_commands, load_plugins
+from arena.cli_results import add_commands as add_result_commands
+from arena.cli_results import print_results
 from arena.configuration import load_tournament
 from arena.results import Results, load
 from arena.runner import run as run_tournament
@@ -28,14 +31,22 @@ app = typer.Typer(
 )
 
 add_commands(app)
+add_result_commands(app)
 
 BAD_INPUT = 2
 SOME_FAILED = 1
 INTERRUPTED = 130
+_BUILT_IN_TAKE = {"replicates", "seed", "reading"}
 
 
 class _InterruptedError(Exception):
     """Ctrl-C while runs were written to a file, the only argument."""
+
+
+def _replicates(text: str) -> int | str:
+    if text != ADAPTIVE and not re.fullmatch(r"-?\d{1,9}", text):
+        raise typer.BadParameter(f"it must be a number or {ADAPTIVE}, got {text!r}")
+    return text if text == ADAPTIVE else int(text)
 
 
 class Driver(StrEnum):
@@ -60,7 +71,20 @@ def run(
         ),
     ] = None,
     jobs: Annotated[int, typer.Option(help="Workers; -1 is one a core.", metavar="N")] = -1,
-    replicates: Annotated[int | None, typer.Option(help="Repetitions of each entrant.", metavar="R")] = None,
+    replicates: Annotated[
+        Any,
+        typer.Option(
+            parser=_replicates,
+            help="Repetitions of each entrant; adaptive: until the first place is decided.",
+            metavar="R|adaptive",
+        ),
+    ] = None,
+    max_replicates: Annotated[
+        int | None, typer.Option(help="Where adaptive replicates end in any case.", metavar="R")
+    ] = None,
+    confidence: Annotated[
+        float | None, typer.Option(help="With which adaptive replicates decide.", metavar="C")
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="Master seed.", metavar="S")] = None,
     reading: Annotated[
         str | None,
@@ -76,6 +100,7 @@ def run(
         raise ValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
     load_plugins(plugin)
     given = {"replicates": replicates, "seed": seed, "reading": reading}
+    given |= {"max_replicates": max_replicates, "confidence": confidence}
     chosen = _tournament(tournament, {key: value for key, value in given.items() if value is not None})
     out = out or _default_file(chosen.name)
     try:
@@ -83,20 +108,10 @@ def run(
     except KeyboardInterrupt:
         raise _InterruptedError(out) from None
     with results:
-        _show(results, as_json=as_json)
+        print_results(results, as_json=as_json)
         failures = sum(one["status"] != "finished" for one in results.runs)
         if failures and (strict or failures == len(results.runs)):
             raise typer.Exit(SOME_FAILED)
-
-
-@app.command()
-def show(
-    file: Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
-    """Print the tables of a results file."""
-    with load(file) as results:
-        _show(results, as_json=as_json)
 
 
 @app.command()
@@ -163,7 +178,8 @@ def _default_file(name: str) -> Path:
 
 def _tournament(name: str, changes: dict[str, Any]) -> Tournament:
     if name in BUILT_IN:
-        return BUILT_IN[name](**changes)
+        built = BUILT_IN[name](**{key: changes[key] for key in _BUILT_IN_TAKE & changes.keys()})
+        return replace(built, **{key: changes[key] for key in changes.keys() - _BUILT_IN_TAKE})
     if not name.endswith(".toml"):
         known = ", ".join(BUILT_IN)
         raise ValueError(f"tournament must be one of {known}, or a file that ends in .toml, got {name!r}")
@@ -183,18 +199,6 @@ def _run(tournament: Tournament, out: Path, jobs: int, driver: str) -> Results:
             driver,
             progress=lambda finished, total: bar.update(task, completed=finished, total=total),
         )
-
-
-def _show(results: Results, *, as_json: bool) -> None:
-    from arena.comparison import compare
-    from arena.tables import render
-
-    if as_json:
-        comparison = compare(results)
-        extra = {"paper": comparison.to_dict()} if comparison else {}
-        print(json.dumps({**results.to_dict(), **extra}, allow_nan=False))
-    else:
-        Console(highlight=False, soft_wrap=True).print(render(results))
 
 
 def _say(sentence: str) -> None:

@@ -53,7 +53,7 @@ class Comparison:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None."""
-        found: dict[str, Any] = _without_nan(asdict(self))
+        found: dict[str, Any] = without_nan(asdict(self))
         return found
 
 
@@ -115,9 +115,10 @@ def _cell(
     return Cell(*key, *ours, accuracy, mean_length, iterations)
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
+    """``value`` with None in place of NaN, tuples as lists."""
     if isinstance(value, dict):
-        return {name: _without_nan(part) for name, part in value.items()}
+        return {name: without_nan(part) for name, part in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_without_nan(part) for part in value]
+        return [without_nan(part) for part in value]
     return None if isinstance(value, float) and math.isnan(value) else value

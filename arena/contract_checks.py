@@ -100,7 +100,8 @@ def check_evaluation_does_not_learn(entrant: Entrant) -> None:
 def check_actions_are_valid(entrant: Entrant) -> None:
     """``act`` and ``greedy`` choose actions that there are, in the whole box and at its corners."""
     rng = np.random.default_rng(3)
-    for agent in (_create(entrant), _trained(entrant)):
+    for make in (_create, _trained):
+        agent = make(entrant)
         for observation in _observations():
             for progress in (0.0, 0.5, 1.0 - 1e-9):
                 _valid(agent.act(observation, progress, rng), f"act({observation})")

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arena.adaptive import ADAPTIVE
 from arena.outcome import Arrays
 from arena.store import Store
 
@@ -111,7 +112,8 @@ class Results:
 
     def __repr__(self) -> str:
         config = self.config
-        total = config["replicates"] * len(config["entrants"])
+        most = config["max_replicates"] if config["replicates"] == ADAPTIVE else config["replicates"]
+        total = most * len(config["entrants"])
         return f"<Results of {config['name']!r}: {len(self._store.rows())} of {total} runs>"
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from arena import compiled_driver, pettingzoo_driver
+from arena.adaptive import ADAPTIVE, Look, decided, looks
 from arena.checkpoint import discard, savable
 from arena.claims import Limits
 from arena.freshness import renew_workers
@@ -20,6 +21,7 @@ from arena.outcome import Outcome, failed
 from arena.pool import Task, check_enforceable, imap, survive
 from arena.provenance import source_digests
 from arena.results import Results
+from arena.scores import scores_of
 from arena.store import Store
 from arena.tournament import Conditions, Run, Tournament
 from envs.checks import choice, instance, integer, number
@@ -54,7 +56,8 @@ def run(
         driver: ``"compiled"``, ``"pettingzoo"``, or ``"auto"``: compiled where the agent can be.
         checkpoint_seconds: a run that takes longer is saved so often beside ``out``, and goes on from
             there if it is interrupted.
-        progress: called with the number of finished runs and of all, at the start and after each.
+        progress: called with the number of finished runs and of all, at the start and after each; of
+            adaptive replicates all are those until the next look.
 
     Raises:
         TypeError, ValueError: when an argument breaks its rule, ``out`` is another tournament's
@@ -75,27 +78,36 @@ def run(
     renew_workers(agents)
     store = Store.resume(path, config, sources) if path is not None and resuming else None
     done = store.finished() if store else set()
-    pending = [r for r in tournament.runs if (r.entrant.name, r.replicate) not in done]
+    stages = _stages(tournament)
     try:
-        travellers, lost = _travel(pending)
+        pending = _pending(tournament, stages, store, done)
+        lost = _travel(pending)
+        travellers = [one for one in pending if one.entrant.name not in lost]
         folder = None if path is None else f"{path}.checkpoints"
         conditions = replace(tournament.conditions, checkpoints=folder, checkpoint_seconds=seconds)
-        tasks = _plan(conditions, travellers, n_jobs, driver)
+        interpreted = _interpreted(conditions, travellers, n_jobs, driver)
         store = store or Store.create(path, config, sources)
-        for outcome in lost:
-            store.add(outcome)
-        report = progress or (lambda _finished, _total: None)
-        finished = len(tournament.runs) - len(travellers)
-        driven = {(one.entrant.name, one.replicate): one for one in travellers}
         if resuming:
             _say_what_starts_anew(conditions, travellers)
-        report(finished, len(tournament.runs))
-        with closing(survive(n_jobs, work, tasks, limits)) as finishing:
-            for outcome in chain.from_iterable(finishing):
-                store.add(outcome)
-                discard(conditions, driven[outcome.entrant, outcome.replicate])
-                finished += 1
-                report(finished, len(tournament.runs))
+        report = progress or (lambda _finished, _total: None)
+        for stage, look in stages:
+            left = [one for one in stage if (one.entrant.name, one.replicate) not in done]
+            for one in left:
+                if one.entrant.name in lost:
+                    store.add(failed(one, "none", lost[one.entrant.name]))
+            driven = {(one.entrant.name, one.replicate): one for one in left if one.entrant.name not in lost}
+            total = len(tournament.entrants) * (stage[-1].replicate + 1)
+            finished = total - len(driven)
+            report(finished, total)
+            tasks = _plan(conditions, list(driven.values()), n_jobs, interpreted)
+            with closing(survive(n_jobs, work, tasks, limits)) as finishing:
+                for outcome in chain.from_iterable(finishing):
+                    store.add(outcome)
+                    discard(conditions, driven[outcome.entrant, outcome.replicate])
+                    finished += 1
+                    report(finished, total)
+            if look and _decided(tournament, store, look):
+                break
     except BaseException:
         if store:
             store.close()
@@ -111,8 +123,40 @@ def _say_what_starts_anew(conditions: Conditions, runs: list[Run]) -> None:
                 _log.warning("%s cannot be saved in the middle: its unfinished runs start anew", entrant.name)
 
 
-def _travel(runs: list[Run]) -> tuple[list[Run], list[Outcome]]:
-    """The runs that can be sent to a worker, and the failures of those that cannot."""
+def _pending(
+    tournament: Tournament,
+    stages: list[tuple[tuple[Run, ...], Look | None]],
+    store: Store | None,
+    done: set[tuple[str, int]],
+) -> list[Run]:
+    """What may have to be run: nothing if what is finished decides."""
+    pending: list[Run] = []
+    for stage, look in stages:
+        pending += [one for one in stage if (one.entrant.name, one.replicate) not in done]
+        if store and look and not pending and _decided(tournament, store, look):
+            break
+    return pending
+
+
+def _decided(tournament: Tournament, store: Store, look: Look) -> bool:
+    return decided(scores_of(Results(store)).costs("steps"), look, tournament.leaders)
+
+
+def _stages(tournament: Tournament) -> list[tuple[tuple[Run, ...], Look | None]]:
+    """The runs before each look of adaptive replicates, else all at once."""
+    entrants = len(tournament.entrants)
+    if tournament.replicates != ADAPTIVE:
+        return [(tournament.runs, None)]
+    found = looks(entrants, tournament.max_replicates, tournament.confidence)
+    starts = [0, *(look.replicates for look in found)]
+    return [
+        (tournament.runs[entrants * start : entrants * look.replicates], look)
+        for start, look in zip(starts, found)
+    ]
+
+
+def _travel(runs: list[Run]) -> dict[str, str]:
+    """Why not, by entrant, for those that cannot be sent to a worker."""
     import cloudpickle
 
     reasons: dict[str, str] = {}
@@ -121,29 +165,37 @@ def _travel(runs: list[Run]) -> tuple[list[Run], list[Outcome]]:
             cloudpickle.dumps(entrant)
         except Exception as error:  # whatever its classes raise
             reasons[entrant.name] = f"it cannot be sent to a worker: {type(error).__name__}: {error}"
-    lost = [failed(run, "none", reasons[run.entrant.name]) for run in runs if run.entrant.name in reasons]
-    return [run for run in runs if run.entrant.name not in reasons], lost
+    return reasons
 
 
-def _plan(conditions: Conditions, runs: list[Run], n_jobs: int, driver: str) -> list[Task]:
+def _interpreted(conditions: Conditions, runs: list[Run], n_jobs: int, driver: str) -> set[str]:
+    """The entrants that are driven in a PettingZoo environment; the others are compiled for."""
+    if driver == "pettingzoo":
+        return {run.entrant.name for run in runs}
+    reasons = _compile(conditions, runs, n_jobs)
+    agents = {
+        run.entrant.agent: (run.entrant.name, reasons[run.entrant.name])
+        for run in runs
+        if run.entrant.name in reasons
+    }
+    for agent, (name, reason) in agents.items():
+        if driver == "compiled":
+            raise ValueError(f"entrant {name!r} cannot be compiled: {reason}")
+        _log.warning("%s runs interpreted: %s", agent.__name__, reason)
+    return set(reasons)
+
+
+def _plan(conditions: Conditions, runs: list[Run], n_jobs: int, interpreted: set[str]) -> list[Task]:
     """Who drives which runs: single compiled ones, and groups of cars in a PettingZoo environment."""
     import joblib
 
-    interpreted = runs
-    tasks: list[Task] = []
-    if driver != "pettingzoo":
-        reasons = _compile(conditions, runs, n_jobs)
-        interpreted = [r for r in runs if r.entrant.name in reasons]
-        for agent, (name, reason) in {
-            r.entrant.agent: (r.entrant.name, reasons[r.entrant.name]) for r in interpreted
-        }.items():
-            if driver == "compiled":
-                raise ValueError(f"entrant {name!r} cannot be compiled: {reason}")
-            _log.warning("%s runs interpreted: %s", agent.__name__, reason)
-        tasks = [(compiled_driver.NAME, conditions, [r]) for r in runs if r.entrant.name not in reasons]
-    groups = min(joblib.effective_n_jobs(n_jobs), len(interpreted))
-    groups = max(groups, math.ceil(len(interpreted) / _CARS_TOGETHER))
-    tasks += [(pettingzoo_driver.NAME, conditions, interpreted[g::groups]) for g in range(groups)]
+    tasks: list[Task] = [
+        (compiled_driver.NAME, conditions, [r]) for r in runs if r.entrant.name not in interpreted
+    ]
+    together = [r for r in runs if r.entrant.name in interpreted]
+    groups = min(joblib.effective_n_jobs(n_jobs), len(together))
+    groups = max(groups, math.ceil(len(together) / _CARS_TOGETHER))
+    tasks += [(pettingzoo_driver.NAME, conditions, together[g::groups]) for g in range(groups)]
     return tasks
 
 

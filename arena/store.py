@@ -17,6 +17,7 @@ from typing import Any
 
 from filelock import FileLock
 
+from arena.adaptive import ADAPTIVE, MOST
 from arena.locks import LockedError, lock_file, unlock
 from arena.outcome import Arrays, Outcome, unpack
 from arena.provenance import versions
@@ -245,6 +246,8 @@ class Store:
                     absurd = isinstance(row[name], (int, float)) and not 0 <= row[name] <= _MOST
                     if absurd or not isinstance(row[name], kinds):
                         raise TypeError(f"{name} of a run is {row[name]!r}")
+                if row["accuracy"] and row["mean_length"] is None:
+                    raise TypeError("a run has an accuracy and no mean_length")
             orphans = (
                 "SELECT count(*) FROM runs LEFT JOIN arrays USING (entrant, replicate) WHERE npz IS NULL"
             )
@@ -287,8 +290,11 @@ class Store:
 
 def _sound(config: Any) -> bool:
     """Whether a tournament that was read has what the rest of the program looks for."""
-    kinds = {"name": str, "reading": str, "seed": int, "replicates": int, "entrants": list}
+    kinds: dict[str, Any] = {"name": str, "reading": str, "seed": int, "replicates": (int, str)}
+    kinds["entrants"] = list
     if not isinstance(config, dict) or not all(isinstance(config.get(k), v) for k, v in kinds.items()):
+        return False
+    if not _sound_numbers(config):
         return False
     parts = {"name": str, "agent": str, "parameters": dict}
     if not all(
@@ -303,6 +309,20 @@ def _sound(config: Any) -> bool:
         *(e[k] for e in config["entrants"] for k in ("name", "agent")),
     ]
     return all(name.isprintable() for name in names)
+
+
+def _sound_numbers(config: dict[str, Any]) -> bool:
+    """Whether the lengths of a tournament are such as scores can be made of."""
+    for part in (config.get("training"), config.get("evaluation")):
+        lengths = [part.get(name) for name in ("episodes", "max_steps")] if isinstance(part, dict) else [None]
+        if not all(isinstance(length, int) and 1 <= length <= _MOST for length in lengths):
+            return False
+    if isinstance(config["replicates"], int):
+        return True
+    most, leaders, confidence = (config.get(k) for k in ("max_replicates", "leaders", "confidence"))
+    counts = isinstance(most, int) and 1 <= most <= MOST and isinstance(leaders, int) and leaders >= 1
+    level = isinstance(confidence, float) and 0.0 < confidence < 1.0
+    return config["replicates"] == ADAPTIVE and counts and level
 
 
 def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:

@@ -2,65 +2,97 @@
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 from rich import box
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from arena.adaptive import ADAPTIVE
 from arena.comparison import MINIMUM_ACCURACY, Comparison, compare
+from arena.leaderboard import Leaderboard, leaderboard
 from arena.readings import READINGS
 from arena.results import Results
-from arena.statistics import mean_interval
+from arena.scores import SCORES
+
+_HEADERS = {"steps": "steps", "accuracy": "accuracy %", "length": "length", "iterations": "iterations"}
 
 
-def render(results: Results) -> RenderableType:
-    """The paper's tables if it is the paper's tournament, else one line an entrant; then the failures."""
-    comparison = compare(results)
-    parts = [_paper(comparison)] if comparison else [_entrants(results)]
-    return Group(Text(_heading(results)), *parts, *_failures(results))
+def render(results: Results, by: str | None = None, confidence: float = 0.95) -> RenderableType:
+    """The leaderboard and the failures; of the paper's tournament its tables, unless a score is asked for.
+
+    Args:
+        results: what to tell.
+        by: the score that places are by; None is ``steps``.
+        confidence: of the leaderboard's intervals and places.
+    """
+    comparison = compare(results) if by is None else None
+    if comparison:
+        parts = [Text(_heading(results, 0.95)), _paper(comparison)]
+    else:
+        board = leaderboard(results, by or "steps", confidence)
+        parts = [Text(_heading(results, confidence)), _leaderboard(board), *map(Text, _notes(results, board))]
+    return Group(*parts, *_failures(results))
 
 
-def _heading(results: Results) -> str:
+def _heading(results: Results, confidence: float) -> str:
     config = results.config
     reading = READINGS.get(config["reading"])
+    replicates = config["replicates"]
+    if replicates == ADAPTIVE:
+        replicates = f"at most {config['max_replicates']}"
     return (
         f"Tournament {config['name']}: {len(config['entrants'])} entrants, "
-        f"{config['replicates']} replicates, seed {config['seed']}.\n"
+        f"{replicates} replicates, seed {config['seed']}.\n"
         f"Reading of the paper: {config['reading']}"
         + (f" ({reading.description})" if reading else "")
-        + ".\n± is the 95% interval of the mean (Student's t over the replicates)."
+        + f".\n± is the {100.0 * confidence:g}% interval of the mean (Student's t over the replicates)."
     )
 
 
-def _entrants(results: Results) -> RenderableType:
-    """One line an entrant, who needs the fewest steps first."""
-    finished: dict[str, list[dict[str, Any]]] = {one["name"]: [] for one in results.config["entrants"]}
-    for run in results.runs:
-        if run["status"] == "finished":
-            finished[run["entrant"]].append(run)
-
-    def interval(name: str, score: str) -> tuple[float, float]:
-        return mean_interval(math.nan if run[score] is None else run[score] for run in finished[name])
-
-    def steps(name: str) -> float:
-        mean, _ = interval(name, "steps")
-        return math.inf if math.isnan(mean) else mean
-
-    table = _table("", "entrant", "accuracy %", "length", "iterations")
-    for name in sorted(finished, key=steps):
-        accuracy, length, iterations = (
-            _interval(*interval(name, score), places)
-            for score, places in (("accuracy", 1), ("mean_length", 1), ("iterations", 0))
+def _leaderboard(board: Leaderboard) -> Table:
+    """One line an entrant; the score that decides comes first, with its interval."""
+    others = [name for name in _HEADERS if name != board.by]
+    table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
+    table.add_column("place", no_wrap=True)
+    table.add_column("entrant", overflow="fold")
+    for name in (board.by, *others):
+        table.add_column(_HEADERS.get(name, name), justify="right", no_wrap=True)
+    for one in board.standings:
+        place = str(one.place) if one.place == one.last_place else f"{one.place}-{one.last_place}"
+        decisive = one.scores[board.by]
+        table.add_row(
+            place,
+            Text(one.entrant),
+            _interval(decisive.value, decisive.high - decisive.value, SCORES[board.by].decimals),
+            *(_interval(one.scores[name].value, math.nan, SCORES[name].decimals) for name in others),
         )
-        table.add_row(Text(name), accuracy, length, iterations)
-    limit = results.config["evaluation"]["max_steps"]
-    notes = [f"In the order of the mean steps, those of a failed episode counted as {limit}."]
-    interpreted = [name for name, runs in finished.items() if any(r["driver"] != "compiled" for r in runs)]
+    return table
+
+
+def _notes(results: Results, board: Leaderboard) -> Iterator[str]:
+    yield f"By the mean {SCORES[board.by].words}."
+    yield from board.remarks
+    if any(one.place > 1 for one in board.standings):
+        yield (
+            f"Places such as 2-4: any of these, with {100.0 * board.confidence:g}% confidence for all "
+            "(paired permutation tests, Holm)."
+        )
+    elif len(board.standings) > 1 and not board.remarks:
+        yield "No two can be told apart (paired permutation tests, Holm)."
+    failed = [f"{one.entrant} ({one.failed})" for one in board.standings if one.failed]
+    if failed:
+        yield f"A run that failed counts as the worst that is possible: {', '.join(failed)}."
+    unfinished = {run["replicate"] for run in results.runs}
+    if len(unfinished) > board.replicates:
+        yield f"Not finished: only the {board.replicates} replicates that all entrants have run count."
+    interpreted = {
+        run["entrant"]: None
+        for run in results.runs
+        if run["status"] == "finished" and run["driver"] != "compiled"
+    }
     if interpreted:
-        notes.append(f"Driven interpreted, in the PettingZoo environment: {', '.join(interpreted)}.")
-    return Group(table, *map(Text, notes))
+        yield f"Driven interpreted, in the PettingZoo environment: {', '.join(interpreted)}."
 
 
 def _paper(comparison: Comparison) -> RenderableType:

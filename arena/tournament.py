@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.adaptive import ADAPTIVE, MOST, looks
 from arena.entrant import Entrant, plain
 from arena.readings import READINGS
 from envs import Hill
@@ -109,7 +110,8 @@ class Tournament:
         hill: what they all drive on.
         training: how long they learn.
         evaluation: how long they are tested.
-        replicates: independent repetitions of each entrant, at least 1.
+        replicates: independent repetitions of each entrant, at least 1; or ``"adaptive"``: as many as
+            it takes to decide the first place, see ``arena.adaptive``.
         seed: master of all random streams, at least 0.
         name: what the tournament is called.
         reading: how to read the paper's protocol where its text leaves it open; see
@@ -118,6 +120,9 @@ class Tournament:
         time_limit: seconds that a run may take in its worker, the worker's start included; None is
             no limit. A run that breaks a limit fails, the others go on.
         memory_limit: mebibytes that a worker may use; None is no limit.
+        max_replicates: where adaptive replicates end in any case.
+        confidence: 1 - the probability that adaptive replicates end with a difference that is none.
+        leaders: how many of the first places adaptive replicates decide.
 
     Raises:
         TypeError, ValueError: when an argument breaks its rule, or an entrant cannot be made.
@@ -127,12 +132,15 @@ class Tournament:
     hill: Hill = Hill()  # noqa: RUF009 (immutable)
     training: Training = Training()
     evaluation: Evaluation = Evaluation()
-    replicates: int = 10
+    replicates: int | str = 10
     seed: int = 0
     name: str = "tournament"
     reading: str = "literal"
     time_limit: float | None = None
     memory_limit: float | None = None
+    max_replicates: int = 50
+    confidence: float = 0.95
+    leaders: int = 1
 
     def __post_init__(self) -> None:
         reading = READINGS[choice("reading", self.reading, READINGS)]
@@ -140,7 +148,9 @@ class Tournament:
             instance(attribute, getattr(self, attribute), kind)
         if not isinstance(self.name, str) or not self.name.strip() or not self.name.isprintable():
             raise ValueError(f"name must be a printable text that is not empty, got {self.name!r}")
-        _integers(self, "", replicates=1, seed=0)
+        _integers(self, "", seed=0, max_replicates=1, leaders=1)
+        if self.replicates != ADAPTIVE:
+            _integers(self, "", replicates=1)
         for limit in ("time_limit", "memory_limit"):
             if getattr(self, limit) is not None:
                 object.__setattr__(self, limit, number(limit, getattr(self, limit), 0, above=True))
@@ -148,6 +158,7 @@ class Tournament:
         object.__setattr__(self, "hill", hill)
         entrants = tuple(map(reading.read, _entrants(self.entrants)))
         object.__setattr__(self, "entrants", entrants)
+        self._check_adaptive()
         for entrant in entrants:
             try:
                 entrant.create(hill, np.random.default_rng(0))
@@ -157,6 +168,26 @@ class Tournament:
             except Exception:  # no bad parameter but a bad agent: its runs will fail and tell
                 _log.debug("entrant %r cannot be created", entrant.name, exc_info=True)
 
+    def _check_adaptive(self) -> None:
+        confidence = number("confidence", self.confidence, 0, 1, above=True)
+        object.__setattr__(self, "confidence", confidence)
+        if self.replicates != ADAPTIVE:
+            return
+        if self.max_replicates > MOST or confidence == 1.0:
+            raise ValueError(f"adaptive replicates need a confidence below 1 and at most {MOST} replicates")
+        if not looks(len(self.entrants), self.max_replicates, confidence):
+            enough = range(self.max_replicates, MOST)
+            least = next((n for n in enough if looks(len(self.entrants), n, confidence)), None)
+            raise ValueError(
+                f"max_replicates must be at least {least} to tell {len(self.entrants)} entrants apart at "
+                f"{100.0 * confidence:g}% confidence, got {self.max_replicates}"
+            )
+
+    @property
+    def most_replicates(self) -> int:
+        """How many there may be of each entrant."""
+        return self.max_replicates if isinstance(self.replicates, str) else self.replicates
+
     @cached_property
     def conditions(self) -> Conditions:
         """What all runs have in common."""
@@ -164,8 +195,8 @@ class Tournament:
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
-        """All runs, replicate by replicate."""
-        return tuple(Run(e, r) for r in range(self.replicates) for e in self.entrants)
+        """All runs that there may be, replicate by replicate."""
+        return tuple(Run(e, r) for r in range(self.most_replicates) for e in self.entrants)
 
     def to_dict(self) -> dict[str, Any]:
         """All of it as plain values; two tournaments are the same if these are equal."""
@@ -179,6 +210,11 @@ class Tournament:
             "evaluation": asdict(self.evaluation),
             "time_limit": self.time_limit,
             "memory_limit": self.memory_limit,
+            **(
+                {name: getattr(self, name) for name in ("max_replicates", "confidence", "leaders")}
+                if self.replicates == ADAPTIVE
+                else {}
+            ),
             "entrants": [entrant.to_dict() for entrant in self.entrants],
         }
 

@@ -53,7 +53,7 @@ def test_run_keeps_results_and_prints_them_and_show_prints_the_same(tmp_path: Pa
     assert "Tournament race: 2 entrants, 2 replicates, seed 0." in done.stdout
     assert "Reading of the paper: literal" in done.stdout
     assert "<b>sarsa[/]" in done.stdout
-    assert re.search(r"momentum +100.0 ± 0.0", done.stdout)
+    assert re.search(r"1-2 +momentum +\d+\.\d ± \d+\.\d +100\.0 ", done.stdout)
     shown = arena("show", "runs/race.sqlite", cwd=tmp_path)
     assert (shown.returncode, shown.stdout, shown.stderr) == (0, done.stdout, "")
 

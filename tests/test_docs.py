@@ -8,12 +8,14 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from test_plugins import BROKEN
 
 from arena.configuration import from_dict
 from arena.readings import READINGS
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+SESSION = ROOT / "docs" / "plugins.md"  # its blocks build on one another
 
 
 def succeed(*arguments: str, cwd: Path) -> str:
@@ -29,6 +31,7 @@ def blocks(language: str) -> list[object]:
     return [
         pytest.param(code, id=f"{page.name}-{number}")
         for page in PAGES
+        if page != SESSION
         for number, code in enumerate(re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL))
     ]
 
@@ -42,6 +45,55 @@ def test_python_examples_run(code: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("code", blocks("toml"))
 def test_toml_examples_are_tournaments(code: str) -> None:
     assert from_dict(tomllib.loads(code)).runs
+
+
+@pytest.mark.slow
+def test_the_page_on_plugins_is_a_session_that_goes_as_it_says(tmp_path: Path) -> None:
+    done = {"toml": 0, "python": 0, "console": 0}
+    for language, code in re.findall(r"```(\w+)\n(.*?)```", SESSION.read_text(), re.DOTALL):
+        done[language] += 1
+        name = re.match(r"# ([\w.]+)\n", code)
+        if language == "console":
+            converse(code, tmp_path)
+        elif name and name[1] == "pyproject.toml":
+            package = tomllib.loads((ROOT / "tests" / "plugin_package" / "pyproject.toml").read_text())
+            offered = package["project"]["entry-points"]["arena.agents"].items()
+            assert tomllib.loads(code)["project"]["entry-points"]["arena.agents"].items() <= offered
+        elif name:
+            (tmp_path / name[1]).write_text(code)
+        else:
+            (tmp_path / "example.py").write_text(code)
+            succeed("-W", "error::DeprecationWarning:__main__", "example.py", cwd=tmp_path)
+    assert min(done.values()) > 2
+
+
+def converse(console: str, cwd: Path) -> None:
+    """Run the commands after each ``$``; they print what the block says, ``...`` being anything."""
+    code = 0
+    for command, expected in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", console, re.MULTILINE):
+        if command == "echo $?":
+            printed = f"{code}\n"
+        else:
+            done = subprocess.run(
+                [sys.executable, "-m", *command.split()],
+                cwd=cwd,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                timeout=300,
+                check=False,
+            )
+            code, printed = done.returncode, done.stdout
+        pattern = "".join(
+            r"(.*\n)*" if line == "..." else re.escape(line).replace(r"\.\.\.", ".*") + r" *\n"
+            for line in expected.splitlines()
+        )
+        assert re.fullmatch(pattern, printed), f"$ {command}\n{printed}"
+
+
+def test_the_page_on_plugins_tells_every_kind_of_broken_file() -> None:
+    rows = re.findall(r"^\| (.*) \| `(.*)` \|$", SESSION.read_text(), re.MULTILINE)
+    assert dict(rows) == {kind: message for kind, (_, message) in BROKEN.items()}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

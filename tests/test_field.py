@@ -1,7 +1,16 @@
 """The built-in tournament of all kinds of agents."""
 
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
 from agents.registry import BUILT_IN
 from arena import Evaluation, Tournament, Training, field, run
+from arena.configuration import load_tournament
+
+FIXED = ["tutorial", "xiao", "momentum", "random"]
 
 
 def test_every_built_in_agent_that_races_in_a_moment_is_in_the_field() -> None:
@@ -20,3 +29,22 @@ def test_the_field_races_compiled() -> None:
     frame = run(short, n_jobs=2).frame()
     assert set(frame["driver"]) == {"compiled"}
     assert set(frame["status"]) == {"finished"}
+
+
+@pytest.mark.slow
+def test_the_search_goes_on_where_it_stopped_and_writes_a_tournament(tmp_path: Path) -> None:
+    script = str(Path(__file__).parent.parent / "scripts" / "tune_field.py")
+    for trials in ("1", "2"):
+        options = ["--agent", "expected-sarsa", "--trials", trials, "--write", "found.toml"]
+        done = subprocess.run(
+            [sys.executable, script, *options],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=300,
+        )
+        assert done.returncode == 0, done.stderr
+        assert f"# best of {trials} trials" in done.stdout
+    found = load_tournament(tmp_path / "found.toml")
+    assert [entrant.name for entrant in found.entrants] == ["expected-sarsa", *FIXED]

@@ -1,0 +1,94 @@
+"""Drives of full thrust that switches a few times: all patterns of switches, and the best on a hill."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.switches import MOST, Spacing
+from envs import Hill
+
+Steps = NDArray[np.int64]
+
+
+def first_pattern(steps: Steps, switches: int, gap: int, last: int) -> bool:
+    """Write the earliest pattern: switch ``a`` at step ``a * gap``; whether it is one.
+
+    Args:
+        steps: filled with the steps of the switches, ascending.
+        switches: how many there are.
+        gap: least distance of two of them.
+        last: the greatest step of a switch.
+    """
+    for a in range(switches):
+        steps[a] = a * gap
+    return switches == 0 or (last >= 0 and steps[switches - 1] <= last)
+
+
+def next_pattern(steps: Steps, switches: int, gap: int, last: int) -> bool:
+    """Write the pattern that follows, in lexical order; whether there is one. For the arguments see above."""
+    a = switches - 1
+    while a >= 0 and steps[a] + (switches - 1 - a) * gap >= last:
+        a -= 1
+    if a < 0:
+        return False
+    steps[a] += 1
+    for later in range(a + 1, switches):
+        steps[later] = steps[later - 1] + gap
+    return True
+
+
+def length(hill: Hill, position: float, switches: int, steps: Steps, coasting: int, most: int) -> int:
+    """The steps to the goal of a drive from rest that ends with thrust right, ``most`` if it needs as many.
+
+    Args:
+        hill: what it is driven on, with its clips.
+        position: where it starts.
+        switches, steps: how often the thrust changes its direction, and when.
+        coasting: bit ``a`` tells whether there is no thrust in the step of switch ``a``.
+        most: where to stop.
+    """
+    state = (position, 0.0)
+    action, switch = (2 if switches % 2 == 0 else 0), 0
+    for step in range(most):
+        chosen = action
+        if switch < switches and steps[switch] == step:
+            action = 2 - action
+            chosen = 1 if (coasting >> switch) & 1 else action
+            switch += 1
+        state, _, terminated = hill.step(state, chosen)
+        if terminated:
+            return step + 1
+    return most
+
+
+def shorten(
+    hill: Hill,
+    positions: NDArray[np.float64],
+    spacing: Spacing,
+    horizons: Steps,
+    coast: bool,
+    found: Steps,
+    steps: Steps,
+) -> None:
+    """Look for shorter drives among all patterns.
+
+    Args:
+        hill: what they are driven on.
+        positions: where they start, at rest; shape (starts,).
+        spacing: of the switches.
+        horizons: drives as long as this are not looked at; shape (starts,).
+        coast: whether to try no thrust in the steps of the switches, too.
+        found: the fewest steps known, shape (starts,); lowered in place.
+        steps: room for ``MOST`` numbers.
+    """
+    for start in range(positions.shape[0]):
+        most = min(found[start], horizons[start])
+        for switches in range(MOST + 1):
+            more = first_pattern(steps, switches, spacing.gap, most - 1 - spacing.last)
+            while more:
+                for coasting in range(1 << switches if coast else 1):
+                    steps_needed = length(hill, positions[start], switches, steps, coasting, most)
+                    if steps_needed < most:
+                        found[start] = most = steps_needed
+                more = next_pattern(steps, switches, spacing.gap, most - 1 - spacing.last)

@@ -1,32 +1,36 @@
-"""Drives of full thrust that switches a few times: all patterns of switches, and the best on a hill."""
-
-from typing import NamedTuple
+"""Drives of full thrust that change its direction a few times: all patterns of switches, and the best one."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from agents.policies import Counts
 from agents.switches import MOST, Spacing
 from envs import Hill
 
-Steps = NDArray[np.int64]
 
-
-def first_pattern(steps: Steps, switches: int, gap: int, last: int) -> bool:
-    """Write the earliest pattern: switch ``a`` at step ``a * gap``; whether it is one.
+def first_pattern(steps: Counts, switches: int, gap: int, last: int) -> bool:
+    """Write the earliest pattern: switch ``a`` in step ``a * gap``; whether it is one.
 
     Args:
         steps: filled with the steps of the switches, ascending.
         switches: how many there are.
         gap: least distance of two of them.
-        last: the greatest step of a switch.
+        last: the last step that a switch may be in.
     """
     for a in range(switches):
         steps[a] = a * gap
-    return switches == 0 or (last >= 0 and steps[switches - 1] <= last)
+    return switches == 0 or (last >= 0 and bool(steps[switches - 1] <= last))
 
 
-def next_pattern(steps: Steps, switches: int, gap: int, last: int) -> bool:
-    """Write the pattern that follows, in lexical order; whether there is one. For the arguments see above."""
+def next_pattern(steps: Counts, switches: int, gap: int, last: int) -> bool:
+    """Write the pattern that follows, in lexical order; whether there is one.
+
+    Args:
+        steps: a pattern; changed in place.
+        switches: how many there are.
+        gap: least distance of two of them.
+        last: the last step that a switch may be in.
+    """
     a = switches - 1
     while a >= 0 and steps[a] + (switches - 1 - a) * gap >= last:
         a -= 1
@@ -38,15 +42,16 @@ def next_pattern(steps: Steps, switches: int, gap: int, last: int) -> bool:
     return True
 
 
-def length(hill: Hill, position: float, switches: int, steps: Steps, coasting: int, most: int) -> int:
-    """The steps to the goal of a drive from rest that ends with thrust right, ``most`` if it needs as many.
+def length(hill: Hill, position: float, switches: int, steps: Counts, coasting: int, most: int) -> int:
+    """The steps to the goal of a drive from rest that ends with thrust right, at most ``most``.
 
     Args:
-        hill: what it is driven on, with its clips.
-        position: where it starts.
-        switches, steps: how often the thrust changes its direction, and when.
+        hill: what is driven on, with its clips.
+        position: where the drive starts.
+        switches: how often the thrust changes its direction.
+        steps: when.
         coasting: bit ``a`` tells whether there is no thrust in the step of switch ``a``.
-        most: where to stop.
+        most: where to give up.
     """
     state = (position, 0.0)
     action, switch = (2 if switches % 2 == 0 else 0), 0
@@ -66,16 +71,16 @@ def shorten(
     hill: Hill,
     positions: NDArray[np.float64],
     spacing: Spacing,
-    horizons: Steps,
+    horizons: Counts,
     coast: bool,
-    found: Steps,
-    steps: Steps,
+    found: Counts,
+    steps: Counts,
 ) -> None:
     """Look for shorter drives among all patterns.
 
     Args:
-        hill: what they are driven on.
-        positions: where they start, at rest; shape (starts,).
+        hill: what is driven on.
+        positions: where the drives start, at rest; shape (starts,).
         spacing: of the switches.
         horizons: drives as long as this are not looked at; shape (starts,).
         coast: whether to try no thrust in the steps of the switches, too.
@@ -88,7 +93,7 @@ def shorten(
             more = first_pattern(steps, switches, spacing.gap, most - 1 - spacing.last)
             while more:
                 for coasting in range(1 << switches if coast else 1):
-                    steps_needed = length(hill, positions[start], switches, steps, coasting, most)
-                    if steps_needed < most:
-                        found[start] = most = steps_needed
+                    needed = length(hill, positions[start], switches, steps, coasting, most)
+                    if needed < most:
+                        found[start] = most = needed
                 more = next_pattern(steps, switches, spacing.gap, most - 1 - spacing.last)

@@ -1,17 +1,17 @@
-"""Lower bounds: before which step no drive from a start passes a limit, proved by computation.
+"""Lower bounds: before which step no relaxed car is beyond a limit, proved by computation.
 
-By the maximum principle (``agents.switches``) it is enough to look at the blocks of full thrust, with any
-thrust in the steps where two blocks meet. For each pattern of switches these thrusts form a box. Over the
-box the drive is a drive of its middle, plus the linear response to each thrust, plus a remainder::
+By the maximum principle (``agents.switches``) it is enough to look at drives of blocks of full thrust, with
+any thrust in the steps where two blocks meet. For each pattern of switches these thrusts form a box. Any
+drive of the box is the drive of its middle, plus its linear response to each thrust, plus a remainder e::
 
-    e[k+1] = M[k] e[k] + G''(.) (x - middle)^2 / 2
+    e[k+1] = M[k] e[k] + (0, G''(.) (x[k] - middle)^2 / 2),      |G''| <= h g omega^3
 
-bounded in the norm sqrt((a x)^2 + v^2) with a = sqrt(g) omega, in which the car's free oscillation hardly
-grows, by the spectral norm of its matrix M[k]; ``|G''| <= h g omega^3``. So a whole box of drives
-is followed at once. A box that cannot be excluded is halved; one that has been halved often enough counts as
-passing the limit, so the bound is valid whatever happens.
+The length of e, with positions in a unit in which a free oscillation hardly grows, is bounded by the
+spectral norm of the step's matrix M[k]. So all drives of a box are followed at once. A box that cannot be
+excluded is halved; one that was halved often enough counts as beyond the limit: the bound is valid
+whatever happens, and tight if that is rare.
 
-The method is that of validated integration: R. E. Moore, Interval Analysis, 1966; R. Lohner 1987.
+Source: validated integration, R. E. Moore, Interval Analysis, 1966.
 """
 
 import math
@@ -21,10 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.bang_bang import first_pattern, next_pattern
+from agents.boxes import DEPTH, Boxes
+from agents.policies import Counts
 from agents.switches import MOST, Relaxed, Spacing
-
-DEPTH = 16
-"""A box is halved so often at most."""
 
 Floats = NDArray[np.float64]
 
@@ -46,11 +45,13 @@ class Limit(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """Starts on a straight line: from the middle minus, to the middle plus what leads to its end.
+    """States on a straight line, from its middle minus, to its middle plus what leads to an end.
 
     Attributes:
-        position, velocity: the middle.
-        length, speed: what leads from there to the end, in position and velocity.
+        position: of the middle.
+        velocity: of the middle.
+        length: of position from there to the end.
+        speed: of velocity from there to the end.
     """
 
     position: float
@@ -59,161 +60,105 @@ class Segment(NamedTuple):
     speed: float
 
 
-class Room(NamedTuple):
-    """Arrays to work in. The last column is the segment of starts, the others are switches.
-
-    Attributes:
-        steps: of the switches, shape (MOST,).
-        middles, halves: the boxes that wait, in units of full thrust; shape (DEPTH + 2, MOST + 1).
-        depths: how often each was halved, shape (DEPTH + 2,).
-        moved, pushed: response of position and velocity to each half, shape (MOST + 1,).
-        widest: greatest response of the position so far, shape (MOST + 1,).
-    """
-
-    steps: NDArray[np.int64]
-    middles: Floats
-    halves: Floats
-    depths: NDArray[np.int64]
-    moved: Floats
-    pushed: Floats
-    widest: Floats
-
-
-def make_room() -> Room:
-    """Arrays to work in."""
-    boxes, responses = np.zeros((2, DEPTH + 2, MOST + 1)), np.zeros((3, MOST + 1))
-    return Room(np.zeros(MOST, np.int64), *boxes, np.zeros(DEPTH + 2, np.int64), *responses)
-
-
 def first_beyond(
-    car: Relaxed, start: Segment, limit: Limit, switches: int, box: int, most: int, room: Room
+    car: Relaxed, start: Segment, limit: Limit, switches: int, box: int, most: int, boxes: Boxes
 ) -> int:
-    """The first step at which a drive of the box may be beyond the limit; ``most`` if none is before.
+    """The first step after which a drive of the box may be beyond the limit; ``most`` if none is before.
+
+    Steps after which the last block is still too short for an extreme are not looked at.
 
     Args:
         car: what is driven.
         start: where it may start.
         limit: what is looked for.
-        switches: how many there are, at ``room.steps``.
-        box: number of the box in ``room``.
+        switches: how many there are, in ``boxes.steps``.
+        box: its number in ``boxes``.
         most: where to stop.
-        room: where the responses are written.
+        boxes: where the responses are written, too.
     """
-    h, keep, moved, pushed = car.time_step, car.keep, room.moved, room.pushed
+    h, moved, pushed = car.time_step, boxes.moved, boxes.pushed
     scale = math.sqrt(max(car.stiffness, 1e-6)) / h
-    kick = 1.0 if car.explicit else math.sqrt(1.0 + (scale * h) ** 2)
-    curvature = 0.5 * car.pull * car.omega**2
+    kick = 1.0 if car.explicit else math.hypot(1.0, scale * h)  # the length of a unit impulse after its step
     for a in range(switches):
-        moved[a] = pushed[a] = room.widest[a] = 0.0
-    along, half = room.middles[box, switches], room.halves[box, switches]
+        moved[a] = pushed[a] = boxes.widest[a] = 0.0
+    along, half = boxes.middles[box, switches], boxes.halves[box, switches]
     x, v = start.position + along * start.length, start.velocity + along * start.speed
     moved[switches], pushed[switches] = half * start.length, half * start.speed
-    room.widest[switches] = abs(moved[switches])
+    boxes.widest[switches] = abs(moved[switches])
     thrust, switch, rest = (limit.sign if switches % 2 == 0 else -limit.sign), 0, 0.0
-    first = room.steps[switches - 1] + limit.spacing.last if switches > 0 else 1
+    first = boxes.steps[switches - 1] + limit.spacing.last if switches > 0 else 1
     for step in range(1, most):
         slope = car.pull * car.omega * math.sin(car.omega * x)
         radius = rest / scale
         for a in range(switches + 1):
             radius += abs(moved[a])
-            pushed_before = pushed[a]
-            pushed[a] = keep * pushed[a] + slope * moved[a]
-            moved[a] += h * (pushed_before if car.explicit else pushed[a])
-        noise = car.slack * (2.0 + (abs(x) + radius) / car.reach)  # of this loop's own roundings
-        rest = growth(car, scale, slope) * rest + kick * (curvature * radius * radius + noise)
+            before = pushed[a]
+            pushed[a] = car.keep * before + slope * moved[a]
+            moved[a] += h * (before if car.explicit else pushed[a])
+        bend = 0.5 * car.pull * car.omega**2 * radius * radius
+        noise = car.slack * (2.0 + (abs(x) + radius) / car.reach)  # the roundings of this loop
+        rest = car.growth(scale, slope) * rest + kick * (bend + noise)
         chosen = thrust
-        if switch < switches and room.steps[switch] == step - 1:
-            chosen, half = room.middles[box, switch], car.impulse * room.halves[box, switch]
-            pushed[switch] = half
-            moved[switch] = 0.0 if car.explicit else h * half
+        if switch < switches and boxes.steps[switch] == step - 1:
+            chosen = boxes.middles[box, switch]
+            pushed[switch] = car.impulse * boxes.halves[box, switch]
+            moved[switch] = 0.0 if car.explicit else h * pushed[switch]
             thrust, switch = -thrust, switch + 1
         before = v
-        v = keep * v + car.impulse * chosen - car.pull * math.cos(car.omega * x)
+        v = car.keep * v + car.impulse * chosen - car.pull * math.cos(car.omega * x)
         x += h * (before if car.explicit else v)
-        value = limit.sign * (v if limit.of_velocity else x) + (rest if limit.of_velocity else rest / scale)
+        greatest = limit.sign * v + rest if limit.of_velocity else limit.sign * x + rest / scale
         for a in range(switches + 1):
-            value += abs(pushed[a] if limit.of_velocity else moved[a])
-            room.widest[a] = max(room.widest[a], abs(moved[a]))
-        if step >= first and not value < limit.value:  # also where it is NaN
+            greatest += abs(pushed[a] if limit.of_velocity else moved[a])
+            boxes.widest[a] = max(boxes.widest[a], abs(moved[a]))
+        if step >= first and not greatest < limit.value:  # beyond also where it is NaN
             return step
     return most
 
 
-def growth(car: Relaxed, scale: float, slope: float) -> float:
-    """The spectral norm of a step's matrix, where positions are measured in units of 1 / ``scale``."""
-    turn, back = scale * car.time_step, slope / scale
-    if car.explicit:
-        squares = 1.0 + turn * turn + back * back + car.keep * car.keep
-        determinant = car.keep - turn * back
-    else:
-        one = 1.0 + turn * back
-        squares = one * one + (turn * car.keep) ** 2 + back * back + car.keep * car.keep
-        determinant = car.keep
-    root = math.sqrt(max(squares * squares - 4.0 * determinant * determinant, 0.0))
-    return math.sqrt(0.5 * (squares + root)) * (1.0 + 1e-12)
-
-
-def first_possible(car: Relaxed, start: Segment, limit: Limit, most: int, boxes: int, room: Room) -> int:
-    """The first step at which any drive may be beyond the limit; ``most`` if none is before.
+def first_possible(car: Relaxed, start: Segment, limit: Limit, most: int, patience: int, boxes: Boxes) -> int:
+    """The first step after which any drive may be beyond the limit; ``most`` if none is before.
 
     Args:
         car: what is driven.
         start: where it may start.
         limit: what is looked for.
-        most: where to stop.
-        boxes: after that many no box is halved any more.
-        room: to work in.
+        most: where to stop; no more than ``MOST`` switches fit in it.
+        patience: after that many boxes none is halved any more.
+        boxes: room to work in.
     """
     switches, gap = 0, limit.spacing.gap
-    while switches <= MOST and first_pattern(room.steps, switches, gap, most - 1 - limit.spacing.last):
+    while switches <= MOST and first_pattern(boxes.steps, switches, gap, most - 1 - limit.spacing.last):
         more = True
         while more:
-            for a in range(switches + 1):
-                room.middles[0, a], room.halves[0, a] = 0.0, 1.0
-            room.depths[0] = waiting = 0
+            boxes.whole(switches)
+            waiting = 0
             while waiting >= 0:
-                step = first_beyond(car, start, limit, switches, waiting, most, room)
-                boxes -= 1
+                step = first_beyond(car, start, limit, switches, waiting, most, boxes)
+                patience -= 1
                 if step >= most:
                     waiting -= 1
-                elif boxes < 0 or room.depths[waiting] >= DEPTH:
+                elif patience < 0 or boxes.depths[waiting] >= DEPTH:
                     most, waiting = step, waiting - 1
                 else:
-                    halve(room, waiting, switches)
+                    boxes.halve(waiting, switches)
                     waiting += 1
-            more = next_pattern(room.steps, switches, gap, most - 1 - limit.spacing.last)
+            more = next_pattern(boxes.steps, switches, gap, most - 1 - limit.spacing.last)
         switches += 1
     return most
 
 
-def halve(room: Room, box: int, switches: int) -> None:
-    """Put the halves of a box, along its widest side, into its place and the next one."""
-    side = 0
-    for a in range(1, switches + 1):
-        if room.widest[a] > room.widest[side]:
-            side = a
-    room.depths[box] += 1
-    room.depths[box + 1] = room.depths[box]
-    room.halves[box, side] /= 2.0
-    for a in range(switches + 1):
-        room.halves[box + 1, a], room.middles[box + 1, a] = room.halves[box, a], room.middles[box, a]
-    room.middles[box, side] -= room.halves[box, side]
-    room.middles[box + 1, side] += room.halves[box + 1, side]
-
-
-def exclude(
-    car: Relaxed, starts: Floats, limit: Limit, boxes: int, found: NDArray[np.int64], room: Room
-) -> None:
-    """The first step at which a drive from each segment of starts may be beyond the limit.
+def exclude(car: Relaxed, starts: Floats, limit: Limit, patience: int, found: Counts, boxes: Boxes) -> None:
+    """The first step after which a car from each segment of starts may be beyond the limit.
 
     Args:
         car: what is driven.
         starts: the segments, shape (starts, 4).
         limit: what is looked for.
-        boxes: for each segment, see ``first_possible``.
+        patience: for each segment, see ``first_possible``.
         found: where to stop, shape (starts,); lowered in place.
-        room: to work in.
+        boxes: room to work in.
     """
     for number in range(starts.shape[0]):
         start = Segment(starts[number, 0], starts[number, 1], starts[number, 2], starts[number, 3])
-        found[number] = first_possible(car, start, limit, found[number], boxes, room)
+        found[number] = first_possible(car, start, limit, found[number], patience, boxes)

@@ -1,10 +1,10 @@
 """Optimal drives, backwards from the goal: a table of the best action in small cells.
 
-At the moment of reaching the goal all is known but the velocity and how far beyond the goal the step ends. From each of
-many such ends the relaxed car of ``agents.switches`` is driven backwards with the thrust that the maximum
-principle asks for; these drives (the characteristics of the Hamilton-Jacobi-Bellman equation) cover the states from
-which the goal can be reached. Where several pass through a cell, the one that is nearest to the goal counts. Clips are
-ignored: the table is a good driver, not a proof.
+When a car reaches the goal two things are open: its velocity, and how far beyond the goal its last step ends.
+From many of these ends the relaxed car of ``agents.switches`` is driven backwards with the thrust that the
+maximum principle asks for. These drives are the characteristics of Bellman's equation; they cover the states from
+which the goal can be reached. Where several pass through a cell, the one that is nearest to the goal counts.
+Clips are ignored: the table is a good driver, not a proof.
 """
 
 import math
@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.grid import Grid
-from agents.policies import Counts
 from agents.switches import Relaxed
 from envs import Hill
 from envs.compilation import compile_loop
@@ -24,7 +23,12 @@ _SPEEDS, _PHASES = 4000, 32  # of the ends: velocities at the goal, and parts of
 
 
 def best_actions(hill: Hill, cells: Grid) -> NDArray[np.int8]:
-    """The best action in each of ``cells``; in those that no drive passes, that of the nearest cell."""
+    """The best action in each of ``cells``; where no drive passes, that of the nearest cell.
+
+    Args:
+        hill: one for whose relaxed car the theory applies.
+        cells: of the table.
+    """
     from scipy.ndimage import distance_transform_edt
 
     nearest = np.full(cells.size, np.inf)
@@ -33,7 +37,8 @@ def best_actions(hill: Hill, cells: Grid) -> NDArray[np.int8]:
     compile_loop(drive_backwards, *arguments)(*arguments)
     unseen = np.isinf(nearest).reshape(cells.bins)
     where = distance_transform_edt(unseen, return_distances=False, return_indices=True)
-    return actions.reshape(cells.bins)[tuple(where)].ravel()
+    found: NDArray[np.int8] = actions.reshape(cells.bins)[tuple(where)].ravel()
+    return found
 
 
 def drive_backwards(
@@ -51,7 +56,8 @@ def drive_backwards(
         car: what is driven.
         hill: its bounds.
         cells: of the table.
-        speeds, phases: how many ends there are of each kind.
+        speeds: how many velocities at the goal are looked at.
+        phases: how many parts of a step beyond it.
         nearest: fewest steps to the goal from each cell, infinity at first; lowered in place.
         actions: the action that begins them.
     """
@@ -64,9 +70,8 @@ def drive_backwards(
             sensitivity = by_v if car.explicit else by_v + car.time_step * by_x
             thrust = car.impulse if sensitivity >= 0.0 else -car.impulse
             x, v = step_back(car, x, v, thrust)
-            if not (
-                hill.min_position <= x < hill.goal_position and hill.min_velocity <= v <= hill.max_velocity
-            ):
+            on_track = hill.min_position <= x < hill.goal_position
+            if not (on_track and hill.min_velocity <= v <= hill.max_velocity):
                 break
             cell = cells.encode((x, v))
             if step - phase > nearest[cell] + _WORSE:

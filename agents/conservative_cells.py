@@ -1,10 +1,10 @@
 """Lower bounds for any hill: the fewest steps to the goal from each cell, if cells could be crossed at will.
 
-Each action leads from a cell into a rectangle that surely contains where it leads from any state of the cell
-(interval arithmetic). A car that may go on from any cell that the rectangle touches is at least as fast as the real
-one, so its fewest steps, found by a breadth-first search backwards from the goal, are a lower bound for
-every state in the cell; and a goal that it cannot reach cannot be reached. The bound is valid with all the
-clips, but not tight: in each step the car gains up to the size of a cell.
+Around where an action leads from the states of a cell there is a rectangle (interval arithmetic). A car that
+may go on from any cell that the rectangle touches is at least as fast as the real one. So its fewest steps,
+by a breadth-first search backwards from the goal, are a lower bound for every state of the cell, with all
+the clips; and a goal that it cannot reach cannot be reached. The bound is not tight: the car gains up to
+the size of a cell in each step.
 """
 
 import math
@@ -18,6 +18,8 @@ from envs import Hill, Integrator
 from envs.compilation import compile_loop
 
 BINS = (800, 800)
+"""Cells along position and velocity, unless told: searched in half a second."""
+
 _MARGIN = 1e-9  # of a cell: far more than all roundings
 
 Rectangle = tuple[float, float, float, float]
@@ -86,7 +88,8 @@ def search_backwards(ends: Counts, links: NDArray[np.int32], steps: Counts, queu
     """Breadth-first search from the last cell, the goal.
 
     Args:
-        ends, links: see ``link_cells``.
+        ends: see ``link_cells``.
+        links: see ``link_cells``.
         steps: filled with the fewest steps of each cell; at first more than any.
         queue: room for all cells, the goal in its first place.
     """
@@ -110,7 +113,7 @@ def cell_of(hill: Hill, bins: tuple[int, int], position: float, velocity: float)
 
 
 def index(value: float, low: float, high: float, bins: int) -> int:
-    """The number of the interval, of ``bins`` equal ones, that contains ``value``; the nearest if none does."""
+    """The number of the interval, of ``bins`` equal ones, that contains ``value`` or is nearest to it."""
     return min(max(int((value - low) / (high - low) * bins), 0), bins - 1)
 
 

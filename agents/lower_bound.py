@@ -4,17 +4,18 @@ Until a car touches the wall or its velocity is clipped, it is a relaxed car (``
 needs at least the least of
 
 - the steps that the relaxed car needs from its start;
-- the steps to the wall, and then those from the wall: there the last touch leaves it at ``min_position``
-  with one of a few velocities, and what follows is a relaxed car again;
-- the steps until its velocity can be clipped, and then those that ``agents.conservative_cells`` asks from that
-  velocity at any position; one at least, as the clipped step itself does not lead to the goal: a velocity clipped
-  to the right would have led further, one clipped to the left leads back.
+- the steps to the wall, and then those from the wall: the last touch leaves the car at ``min_position`` with
+  a velocity in a small range, and what follows is a relaxed car again;
+- the steps until its velocity can be clipped, and then those that ``agents.conservative_cells`` asks for
+  from that velocity at any position; one at least, as the clipped step itself is not the first to the goal:
+  to the right it would have led further without the clip, and to the left it leads away.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.certificate import Limit, exclude, make_room
+from agents.boxes import Boxes
+from agents.certificate import Limit, exclude
 from agents.switches import Relaxed, Spacing, patterns, spacing
 from envs import Hill
 from envs.compilation import compile_loop
@@ -31,7 +32,7 @@ Floats = NDArray[np.float64]
 
 def affordable(spacing: Spacing, horizon: int) -> int:
     """The most steps, up to ``horizon``, in which all patterns of switches can be tried."""
-    low, high = 1, horizon  # no more than a bisection: the number of patterns grows
+    low, high = 1, horizon
     while low < high:
         middle = (low + high + 1) // 2
         if patterns(spacing, middle) * middle <= WORK:
@@ -72,7 +73,7 @@ class _Proofs:
     """What is excluded on one hill."""
 
     def __init__(self, hill: Hill, rest: tuple[int, int]) -> None:
-        self._car, self._room, self._rest = Relaxed.of(hill), make_room(), rest
+        self._car, self._room, self._rest = Relaxed.of(hill), Boxes.make(), rest
         slack = self._car.slack
         position, velocity = (spacing(self._car, of_velocity=of) for of in (False, True))
         self.goal = Limit(False, 1.0, hill.goal_position - slack, position)

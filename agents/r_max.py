@@ -9,6 +9,7 @@ from agents.cell_model import CellModel
 from agents.contract import Observation, Task
 from agents.inheritance import inherits
 from agents.parameters import Count, NonNegative, validated
+from agents.policies import Counts
 from agents.tabular import OF_THE_UPDATE, Tabular
 
 
@@ -21,6 +22,8 @@ class Knowledge(NamedTuple):
         known: visits that make an action in a cell known.
         sweeps: of value iteration at most, each time something is learned.
         tolerance: change of all worths that ends value iteration.
+        cells: int64, shape (cells,): those in which something is known, in the order of finding out.
+        found: int64, shape (1,): how many these are.
     """
 
     model: CellModel
@@ -28,6 +31,8 @@ class Knowledge(NamedTuple):
     known: int
     sweeps: int
     tolerance: float
+    cells: Counts
+    found: Counts
 
 
 class RMax(Tabular[Knowledge]):
@@ -76,8 +81,12 @@ class RMax(Tabular[Knowledge]):
         )
         cells, actions = table.values.shape
         worth = np.append(table.values.max(axis=1), 0.0)
-        model = CellModel.of_size(cells, actions)
-        return cls(*table[:-1], Knowledge(model, worth, known, sweeps, tolerance))
+        model, room, found = (
+            CellModel.of_size(cells, actions),
+            np.zeros(cells, np.int64),
+            np.zeros(1, np.int64),
+        )
+        return cls(*table[:-1], Knowledge(model, worth, known, sweeps, tolerance, room, found))
 
     def learn(
         self,
@@ -95,16 +104,34 @@ class RMax(Tabular[Knowledge]):
         self.visits[cell, action] += 1
         times = self.visits[cell, action] // memory.known
         if times * memory.known == self.visits[cell, action] and times & (times - 1) == 0:
+            self.note(cell)
             sweeps = 0
             while sweeps < memory.sweeps and self.sweep() > memory.tolerance:
                 sweeps += 1
 
+    def note(self, cell: int) -> None:
+        """Put a cell of which something is known on the list, if it is not there."""
+        memory = self.memory
+        for place in range(memory.found[0]):
+            if memory.cells[place] == cell:
+                return
+        memory.cells[memory.found[0]] = cell
+        memory.found[0] += 1
+
     def sweep(self) -> float:
-        """A sweep of value iteration in place (Gauss-Seidel); the greatest change of a worth."""
+        """A sweep of value iteration in place (Gauss-Seidel); the greatest change of a worth.
+
+        The newest cells come first: the way there led through the older ones, whose worth follows.
+        """
         memory, greatest = self.memory, 0.0
-        for cell in range(self.values.shape[0]):
+        for place in range(memory.found[0] - 1, -1, -1):
             change = memory.model.back_up(
-                self.values, self.visits, memory.worth, cell, memory.known, self.update.discount
+                self.values,
+                self.visits,
+                memory.worth,
+                memory.cells[place],
+                memory.known,
+                self.update.discount,
             )
             greatest = max(greatest, change)
         return greatest

@@ -1,7 +1,7 @@
 """Planning on the digitized hill: what a grid can do without any learning.
 
-Value iteration: R. Bellman 1957; Sutton & Barto 2018, section 4.4. Policy search: H. Mine & S. Osaki 1970 call
-a policy on cells of states that look alike memoryless; to find the best one is hard, so it is searched locally.
+Value iteration: R. Bellman 1957; Sutton & Barto 2018, section 4.4. Why its policy need not be the best one on
+the grid: M. Littman, Memoryless policies: theoretical limitations and practical results, 1994.
 """
 
 from typing import Annotated, Any, NamedTuple, Self
@@ -18,23 +18,23 @@ from agents.policies import Counts, Table, best_action
 from envs.compilation import compile_loop
 
 _SWEEPS, _TOLERANCE = 5000, 1e-6  # of value iteration
-_HOPELESS = -1e6  # value of a cell without points
-_GOLDEN = (
+_HOPELESS = -1e6  # worth of a cell without points
+_ROBERTS = (
     0.7548776662466927,
     0.5698402909980532,
-)  # of a sequence of points that are spread evenly: Roberts 2018
+)  # steps of a sequence of evenly spread points (Roberts 2018)
 _STARTS, _PATIENCE = 100, 500  # of the drives by which a policy is judged
 
 
 class GridPlanner(NamedTuple):
-    """Knows the hill, but sees cells: drives by the solution of the digitized model. It learns nothing.
+    """Knows the hill but sees cells: drives by the solution of the digitized model. It learns nothing.
 
-    The digitized model is a Markov chain of cells: the car is taken to be anywhere in its cell, all places
-    equally likely, in each step anew. Of this model the policy is the best; it is not the best policy on these
-    cells, as a real car is not anywhere, but where it came in. So a learner with the same cells may do better,
-    most of all where they are few. ``polish`` improves the policy on the hill itself: the action of one cell after
-    the other is changed, and kept if drives from ``_STARTS`` starts become shorter on average. That ends where no
-    change of a single cell helps, which is a bound of what the grid can do from one side only.
+    In the digitized model the car is, in each step anew, anywhere in its cell, all places equally likely.
+    Of that model this is the best policy. It need not be the best one that these cells allow on the hill,
+    where a car is not anywhere but where it came in: the coarser the grid, the more a learner may find that
+    the model does not show. With ``polish`` the policy is improved on the hill itself: the action of one
+    cell after the other is changed, and the change is kept if drives become shorter on average. That ends
+    where no change of a single cell helps: good, perhaps not the best.
 
     Attributes:
         cells: what divides the observations.
@@ -131,7 +131,7 @@ def plan(
     """
     n_cells, n_actions = values.shape
     for point in range(points):
-        x, v = (0.5 + point * _GOLDEN[0]) % 1.0, (0.5 + point * _GOLDEN[1]) % 1.0
+        x, v = (0.5 + point * _ROBERTS[0]) % 1.0, (0.5 + point * _ROBERTS[1]) % 1.0
         state = (
             hill.min_position + x * (hill.goal_position - hill.min_position),
             hill.min_velocity + v * (hill.max_velocity - hill.min_velocity),

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from arena import compiled_driver, pettingzoo_driver
-from arena.adaptive import ADAPTIVE, Look, decided, looks
 from arena.checkpoint import discard, savable
 from arena.claims import Limits
 from arena.freshness import renew_workers
@@ -21,7 +20,7 @@ from arena.outcome import Outcome, failed
 from arena.pool import Task, check_enforceable, imap, survive
 from arena.provenance import source_digests
 from arena.results import Results
-from arena.scores import scores_of
+from arena.stages import is_decided, pending_runs, stages_of
 from arena.store import Store
 from arena.tournament import Conditions, Run, Tournament
 from envs.checks import choice, instance, integer, number
@@ -78,9 +77,9 @@ def run(
     renew_workers(agents)
     store = Store.resume(path, config, sources) if path is not None and resuming else None
     done = store.finished() if store else set()
-    stages = _stages(tournament)
+    stages = stages_of(tournament)
     try:
-        pending = _pending(tournament, stages, store, done)
+        pending = pending_runs(tournament, stages, store, done)
         lost = _travel(pending)
         travellers = [one for one in pending if one.entrant.name not in lost]
         folder = None if path is None else f"{path}.checkpoints"
@@ -106,7 +105,7 @@ def run(
                     discard(conditions, driven[outcome.entrant, outcome.replicate])
                     finished += 1
                     report(finished, total)
-            if look and _decided(tournament, store, look):
+            if look and is_decided(tournament, store, look):
                 break
     except BaseException:
         if store:
@@ -121,38 +120,6 @@ def _say_what_starts_anew(conditions: Conditions, runs: list[Run]) -> None:
         with suppress(Exception):  # the agent cannot be created; its run will say so
             if not savable(entrant.create(conditions.hill, np.random.default_rng(0))):
                 _log.warning("%s cannot be saved in the middle: its unfinished runs start anew", entrant.name)
-
-
-def _pending(
-    tournament: Tournament,
-    stages: list[tuple[tuple[Run, ...], Look | None]],
-    store: Store | None,
-    done: set[tuple[str, int]],
-) -> list[Run]:
-    """What may have to be run: nothing if what is finished decides."""
-    pending: list[Run] = []
-    for stage, look in stages:
-        pending += [one for one in stage if (one.entrant.name, one.replicate) not in done]
-        if store and look and not pending and _decided(tournament, store, look):
-            break
-    return pending
-
-
-def _decided(tournament: Tournament, store: Store, look: Look) -> bool:
-    return decided(scores_of(Results(store)).costs("steps"), look, tournament.leaders)
-
-
-def _stages(tournament: Tournament) -> list[tuple[tuple[Run, ...], Look | None]]:
-    """The runs before each look of adaptive replicates, else all at once."""
-    entrants = len(tournament.entrants)
-    if tournament.replicates != ADAPTIVE:
-        return [(tournament.runs, None)]
-    found = looks(entrants, tournament.max_replicates, tournament.confidence)
-    starts = [0, *(look.replicates for look in found)]
-    return [
-        (tournament.runs[entrants * start : entrants * look.replicates], look)
-        for start, look in zip(starts, found)
-    ]
 
 
 def _travel(runs: list[Run]) -> dict[str, str]:

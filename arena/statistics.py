@@ -105,7 +105,7 @@ def probability_of_improvement(x: ArrayLike, y: ArrayLike, confidence: float = 0
     That is Mann and Whitney's U over the number of pairs, as in Agarwal et al. (2021). The interval is
     method 5 of Newcombe (2006, "Confidence intervals for an effect size measure based on the
     Mann-Whitney statistic, part 2"), made for independent samples. Agarwal et al. take a bootstrap,
-    which with ten replicates covers 30% in place of 95% when nearly all pairs have one winner.
+    which with ten replicates covers 51% in place of 95% when the true value is 0.98.
     """
     from scipy.special import ndtri
 

@@ -27,10 +27,10 @@ from arena import Entrant, Evaluation, Tournament, Training, run
 
 
 class SB3DQN:
-    """Mnih et al. 2015, with the hyperparameters of RL Baselines3 Zoo for MountainCar-v0; it scales observations.
+    """Mnih et al. 2015, with the hyperparameters that RL Baselines3 Zoo has for MountainCar-v0.
 
-    Its weights are attributes, arrays that share their memory with the network: so they are kept in the
-    results.
+    Only the observations are scaled, which the Zoo leaves as they are. The weights are attributes, arrays
+    that share their memory with the network: so they are kept in the results.
     """
 
     low: Any

@@ -101,8 +101,25 @@ def probabilities() -> Iterator[Case]:
             ) -> bool:
                 return holds(probability_of_improvement(rng.normal(a, b, n), rng.normal(size=n)), p)
 
+            def other(
+                rng: np.random.Generator, n: int = n, a: float = shift, b: float = scale, p: float = true
+            ) -> bool:
+                return holds(resampled(rng.normal(a, b, n), rng.normal(size=n), rng), p)
+
             data = f"normal, true value {true:.2f}" + (", unequal spread" if scale != 1.0 else "")
             yield Case("probability", "probability of improvement", data, n, 0.95, False, trial)
+            if shift == 3.0:
+                what = "probability of improvement, bootstrap (not used)"
+                yield Case("probability", what, data, n, 0.95, False, other)
+
+
+def resampled(x: Floats, y: Floats, rng: np.random.Generator) -> Estimate:
+    """The probability of improvement with the percentiles of a bootstrap."""
+    signs = 0.5 + 0.5 * np.sign(x[:, None] - y[None, :])
+    first, second = (rng.multinomial(len(one), np.full(len(one), 1.0 / len(one)), 1000) for one in (x, y))
+    values = np.einsum("bi,ij,bj->b", first, signs, second) / (len(x) * len(y))
+    low, high = np.quantile(values, [0.025, 0.975])
+    return Estimate(float(signs.mean()), float(low), float(high))
 
 
 def tests() -> Iterator[Case]:

@@ -26,11 +26,12 @@ def made_up(
     All test drives reach the goal, but none does in a replicate whose steps are the limit; None is a run
     that failed. Replicates that an entrant lacks are not run yet.
     """
+    chosen: dict[str, Any] = {"replicates": max(1, *map(len, steps.values())), "name": "made up"}
     tournament = Tournament(
         tuple(Entrant(name, MomentumAgent) for name in steps),
         training=Training(10, 1000),
         evaluation=Evaluation(4, LIMIT),
-        **{"replicates": max(1, *map(len, steps.values())), "name": "made up"} | arguments,
+        **chosen | arguments,
     )
     store = Store.create(path, tournament.to_dict())
     for name, values in steps.items():

@@ -3,6 +3,7 @@
 import io
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from arena.tables import render
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0, 9.0, 8.0]
 
 
-def four(count: int = 10, **arguments: object) -> Results:
+def four(count: int = 10, **arguments: Any) -> Results:
     """Two that cannot be told apart, one that is worse, one that is worse yet."""
     noise = NOISE[:count]
     steps = {
@@ -65,7 +66,7 @@ def test_the_order_of_the_entrants_changes_nothing() -> None:
         names = [one["name"] for one in results.config["entrants"]]
         steps = {name: scores_of(results).values["steps"][i] for i, name in enumerate(names)}
         board = leaderboard(results)
-    with made_up({name: steps[name] for name in reversed(names)}) as turned:  # type: ignore[arg-type]
+    with made_up({name: steps[name] for name in reversed(names)}) as turned:
         other = leaderboard(turned)
     assert other.frame().equals(board.frame())
 

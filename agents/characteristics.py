@@ -2,9 +2,9 @@
 
 When a car reaches the goal two things are open: its velocity, and how far beyond the goal its last step ends.
 From many of these ends the relaxed car of ``agents.switches`` is driven backwards with the thrust that the
-maximum principle asks for. These drives are the characteristics of Bellman's equation; they cover the states from
-which the goal can be reached. Where several pass through a cell, the one that is nearest to the goal counts.
-Clips are ignored: the table is a good driver, not a proof.
+maximum principle asks for. These drives are the characteristics of Bellman's equation; they cover the states
+from which the goal can be reached. Where several pass through a cell, the one that is nearest to the goal
+counts. Clips are ignored: the table is a good driver, not a proof.
 """
 
 import math

@@ -6,9 +6,12 @@ needs at least the least of
 - the steps that the relaxed car needs from its start;
 - the steps to the wall, and then those from the wall: the last touch leaves the car at ``min_position`` with
   a velocity in a small range, and what follows is a relaxed car again;
-- the steps until its velocity can be clipped, and then those that ``agents.conservative_cells`` asks for
-  from that velocity at any position; one at least, as the clipped step itself is not the first to the goal:
-  to the right it would have led further without the clip, and to the left it leads away.
+- the steps until its velocity to the left can be clipped, and then those that ``agents.conservative_cells``
+  asks for from that velocity, wherever the car is;
+- the steps until its velocity to the right can be clipped, and then as many as it takes to turn around,
+  but no more than ``Spacing.last``. For a clip is an impulse to the left. It does not help in the last
+  steps of a drive, in which each impulse to the right helps; and until the car has turned, nothing
+  else happens to it that a relaxed car does not know.
 """
 
 import numpy as np
@@ -16,6 +19,7 @@ from numpy.typing import NDArray
 
 from agents.boxes import Boxes
 from agents.certificate import Limit, exclude
+from agents.conservative_cells import index
 from agents.switches import Relaxed, Spacing, patterns, spacing
 from envs import Hill
 from envs.compilation import compile_loop
@@ -53,8 +57,8 @@ def lower_bound(hill: Hill, positions: Floats, upper: Steps, cells: Steps) -> St
     """
     if len(positions) == 0:
         return upper
-    rest = (max(int(cells[:, -1].min()), 1), max(int(cells[:, 0].min()), 1))
-    proofs = _Proofs(hill, rest)
+    before_goal = cells[: index(hill.goal_position, hill.min_position, hill.max_position, len(cells)) + 1]
+    proofs = _Proofs(hill, max(int(before_goal[:, 0].min()), 1))
     alone = _segments(positions)
     free = proofs.exclude(alone, upper, proofs.goal)
     most = np.array([free.max()])
@@ -72,20 +76,21 @@ def lower_bound(hill: Hill, positions: Floats, upper: Steps, cells: Steps) -> St
 class _Proofs:
     """What is excluded on one hill."""
 
-    def __init__(self, hill: Hill, rest: tuple[int, int]) -> None:
-        self._car, self._room, self._rest = Relaxed.of(hill), Boxes.make(), rest
-        slack = self._car.slack
-        position, velocity = (spacing(self._car, of_velocity=of) for of in (False, True))
+    def __init__(self, hill: Hill, from_left: int) -> None:
+        self._car, self._boxes = car, _ = Relaxed.of(hill), Boxes.make()
+        slack, brake = car.slack, car.impulse + car.pull + (1.0 - car.keep) * hill.max_velocity
+        position, velocity = (spacing(car, of_velocity=of) for of in (False, True))
+        from_right = max(min(position.last, int(hill.max_velocity / brake)), 1)
         self.goal = Limit(False, 1.0, hill.goal_position - slack, position)
         self._wall = Limit(False, -1.0, -hill.min_position - slack, position)
         self._clips = (
-            Limit(True, 1.0, hill.max_velocity - slack, velocity),
-            Limit(True, -1.0, -hill.min_velocity - slack, velocity),
+            (Limit(True, 1.0, hill.max_velocity - slack, velocity), from_right),
+            (Limit(True, -1.0, -hill.min_velocity - slack, velocity), from_left),
         )
 
     def horizon(self, most: Steps) -> Steps:
         """The most steps, up to ``most``, for which clips of the velocity can be excluded."""
-        return np.minimum(most, affordable(self._clips[0].spacing, int(most.max())))
+        return np.minimum(most, affordable(self._clips[0][0].spacing, int(most.max())))
 
     def exclude(self, segments: Floats, most: Steps, limit: Limit) -> Steps:
         """The first step at which a drive may be beyond ``limit``, at most ``most``."""
@@ -93,14 +98,14 @@ class _Proofs:
             return most
         horizon = affordable(limit.spacing, int(most.max()))
         found = np.minimum(most, horizon)
-        boxes = int(_PER_PATTERN * patterns(limit.spacing, horizon)) + 1000
-        arguments = (self._car, segments, limit, boxes, found, self._room)
+        patience = int(_PER_PATTERN * patterns(limit.spacing, horizon)) + 1000
+        arguments = (self._car, segments, limit, patience, found, self._boxes)
         compile_loop(exclude, *arguments)(*arguments)
         return found
 
     def clipped(self, segments: Floats, most: Steps) -> Steps:
         """A lower bound, at most ``most``, of the drives whose velocity is clipped."""
-        for limit, rest in zip(self._clips, self._rest, strict=True):
+        for limit, rest in self._clips:
             first = self.exclude(segments, np.maximum(most - rest, 1), limit)
             most = np.minimum(most, first + rest)
         return most

@@ -147,8 +147,8 @@ class Optimal(NamedTuple):
             bins: cells along position and along velocity.
 
         Raises:
-            TypeError, ValueError: when ``task`` is no hill or has too much friction, or a parameter breaks its
-                rule.
+            TypeError, ValueError: when ``task`` is no hill or has too much friction; when a parameter breaks
+                its rule.
         """
         return cls(*_table(instance("task", task, Hill), bins))
 
@@ -172,7 +172,7 @@ class Optimal(NamedTuple):
         return int(self.actions[self.cells.encode(observation)])
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _table(hill: Hill, bins: int) -> tuple[Grid, NDArray[np.int8]]:
     if not Relaxed.of(hill).applies:
         raise ValueError(

@@ -153,13 +153,13 @@ def spacing(car: Relaxed, *, of_velocity: bool) -> Spacing:
 
 def _same_sign(quotient: float, a: float, b: float) -> int:
     """The number of terms in a row that surely have the same sign, if the first two have that quotient."""
+    discriminant = a * a - 4.0 * b
+    if discriminant >= 0.0 and quotient >= 0.5 * (a - math.sqrt(discriminant)):
+        return FAR  # no oscillation: the quotient stays above a fixed point of r = a - b / r
     terms = 1
     while quotient > _DOUBT and terms < FAR:
         terms += 1
-        following = a - b / quotient
-        if following == quotient:  # and so for ever
-            return FAR
-        quotient = following
+        quotient = a - b / quotient
     return terms
 
 

@@ -40,7 +40,7 @@ def quick(replicates: int = 3, seed: int = 0, reading: str = "literal") -> Tourn
     )
 
 
-def field(replicates: int = 10, seed: int = 0, reading: str = "literal") -> Tournament:
+def field(replicates: int = 20, seed: int = 0, reading: str = "literal") -> Tournament:
     """All kinds of agents, with the parameters that the search of ``scripts/tune_field.py`` found."""
     with as_file(files("arena") / "data" / "field.toml") as path:
         return load_tournament(path, replicates=replicates, seed=seed, reading=reading)

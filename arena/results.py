@@ -135,12 +135,14 @@ def _none(value: Any) -> Any:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
-def _steps(accuracy: float | None, mean_length: float, limit: int) -> float | None:
+def _steps(accuracy: float | None, mean_length: float | None, limit: int) -> float | None:
     """Mean steps, those that failed counted at the limit; None for a run that did not finish."""
     if accuracy is None or math.isnan(accuracy):
         return None
     share = accuracy / 100.0
-    return share * (0.0 if share == 0.0 else mean_length) + (1.0 - share) * limit
+    if share == 0.0:
+        return float(limit)
+    return None if mean_length is None else share * mean_length + (1.0 - share) * limit
 
 
 def _cell(value: Any) -> Any:

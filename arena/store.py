@@ -246,8 +246,6 @@ class Store:
                     absurd = isinstance(row[name], (int, float)) and not 0 <= row[name] <= _MOST
                     if absurd or not isinstance(row[name], kinds):
                         raise TypeError(f"{name} of a run is {row[name]!r}")
-                if row["accuracy"] and row["mean_length"] is None:
-                    raise TypeError("a run has an accuracy and no mean_length")
             orphans = (
                 "SELECT count(*) FROM runs LEFT JOIN arrays USING (entrant, replicate) WHERE npz IS NULL"
             )

@@ -108,7 +108,10 @@ def test_a_small_paper_prints_both_tables(race: str, capsys: pytest.CaptureFixtu
     ("arguments", "message"),
     [
         (["run"], "Missing argument 'paper|quick|field|FILE.toml'"),
-        (["run", "papr"], "tournament must be one of paper, quick, or a file that ends in .toml, got 'papr'"),
+        (
+            ["run", "papr"],
+            "tournament must be one of paper, quick, field, or a file that ends in .toml, got 'papr'",
+        ),
         (["run", "none.toml"], "there is no tournament file none.toml"),
         (["run", "bad.toml"], "bad.toml is not a TOML file"),
         (["run", "zero.toml"], "zero.toml: entrant 'sarsa': bins must be at least 1, got 0"),

@@ -147,6 +147,6 @@ def test_fingerprints_tell_agents_and_types_apart_but_not_values() -> None:
 
     assert mark(QLearning.create(hill)) == mark(QLearning.create(hill, bins=(7, 9), discount=0.5))
     assert mark(QLearning.create(hill)) != mark(Sarsa.create(hill))
-    assert mark(QLearning.create(hill)) != mark(QLearning.create(hill, count_visits="state"))
+    assert mark(QLearning.create(hill)) != mark(QLearning.create(hill, binning="quantile"))
     single = QLearning.create(hill)._replace(values=np.zeros((600, 3), np.float32))
     assert mark(QLearning.create(hill)) != mark(single)

@@ -39,8 +39,8 @@ def told(results: Results) -> tuple[list[Any], dict[Any, Any]]:
 
 @pytest.mark.parametrize("hill", HILLS.values(), ids=HILLS)
 @pytest.mark.parametrize("seed", [0, 12345])
-def test_every_built_in_agent_gets_the_same_bits_from_both_drivers(hill: Hill, seed: int) -> None:
-    entrants = [Entrant(name, agent) for name, agent in BUILT_IN.items()]
+def test_both_drivers_get_the_same_bits_on_every_hill(hill: Hill, seed: int) -> None:
+    entrants = [Entrant(name, BUILT_IN[name]) for name in ("q-learning", "sarsa", "random", "momentum")]
     tournament = Tournament(
         (*entrants, Entrant("allocates", Leaky)),
         hill,

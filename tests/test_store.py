@@ -37,9 +37,9 @@ def test_the_frame_has_a_row_a_run_and_a_column_a_parameter(file: Path) -> None:
         frame = results.frame()
         assert repr(results) == "<Results of 'small': 4 of 4 runs>"
     assert list(frame.columns) == [
-        *("entrant", "agent", "bins", "discount", "step_size", "epsilon", "initial_values"),
-        *("count_visits", "goal", "replicate", "accuracy", "mean_length", "iterations", "seconds"),
-        *("driver", "status"),
+        *("entrant", "agent", "bins", "binning", "discount", "step_size", "epsilon", "explore"),
+        *("initial_values", "count_visits", "goal", "replicate", "accuracy", "mean_length", "steps"),
+        *("iterations", "seconds", "driver", "status"),
     ]
     assert frame.entrant.tolist() == ["q", "q", "s", "s"]
     assert frame.agent.tolist() == ["q-learning", "q-learning", "sarsa", "sarsa"]
@@ -70,13 +70,14 @@ def test_json_is_strict_and_complete() -> None:
     assert {key: told[key] for key in tournament.to_dict()} == tournament.to_dict()
     momentum, random = told["runs"][0], told["runs"][2]
     assert set(momentum) == {
-        *("entrant", "agent", "parameters", "replicate", "accuracy", "mean_length", "iterations"),
-        *("seconds", "driver", "status"),
+        *("entrant", "agent", "parameters", "replicate", "accuracy", "mean_length", "steps"),
+        *("iterations", "seconds", "driver", "status"),
     }
     assert momentum["accuracy"] == 100.0
     assert 83 <= momentum["mean_length"] <= 150
     assert random["accuracy"] == 0.0
     assert random["mean_length"] is None
+    assert (momentum["steps"], random["steps"]) == (momentum["mean_length"], 150.0)
     assert told["versions"]["numpy"] == np.__version__
 
 

@@ -26,9 +26,11 @@ def test_an_entrant_knows_all_its_parameters() -> None:
         "agent": "sarsa",
         "parameters": {
             "bins": [10, 20],
+            "binning": "uniform",
             "discount": 0.99,
             "step_size": {"A": 1.0, "B": 10.0, "C": 0.01},
-            "epsilon": {"start": 0.5, "end": 0.01},
+            "epsilon": {"start": 0.5, "end": 0.01, "until": 1.0},
+            "explore": None,
             "initial_values": 0.0,
             "count_visits": "step",
             "goal": "terminal",

@@ -12,15 +12,16 @@ from arena.outcome import Outcome, unpack
 from arena.pool import survive
 from arena.results import Results, plain_scores
 from arena.runner import work
+from arena.tournament import Conditions, Run
 from envs.checks import integer
-
-_OTHER = {compiled_driver.NAME: pettingzoo_driver.NAME, pettingzoo_driver.NAME: compiled_driver.NAME}
+from envs.compilation import CompilationError
 
 
 def verify(results: Results, runs: int = 4) -> Iterator[str]:
     """Run a sample of the finished runs again and tell each difference, in words.
 
-    Each of them is run in the other driver in this process, and in its own driver in two threads.
+    Each of them is run in the other driver in this process (an agent that cannot be compiled in the
+    same), and in its own driver in two threads.
     The results file runs no code: the agents are found by their names among the installed ones.
 
     Args:
@@ -43,7 +44,8 @@ def verify(results: Results, runs: int = 4) -> Iterator[str]:
         tasks = []
         for run in chosen:
             driver = stored[run.entrant.name, run.replicate]["driver"]
-            tasks.append((_OTHER[driver] if other else driver, tournament.conditions, [run]))
+            chosen_driver = _other(driver, tournament.conditions, run) if other else driver
+            tasks.append((chosen_driver, tournament.conditions, [run]))
         with joblib.parallel_config(backend=backend):
             for outcomes in survive(n_jobs, work, tasks, Limits()):
                 for outcome in outcomes:
@@ -54,6 +56,19 @@ def verify(results: Results, runs: int = 4) -> Iterator[str]:
                             f"replicate {outcome.replicate} of {outcome.entrant!r} differs in {difference} "
                             f"({outcome.driver} driver, {backend}, {n_jobs} workers)"
                         )
+
+
+def _other(driver: str, conditions: Conditions, run: Run) -> str:
+    """The other driver; the same one for an agent that cannot be compiled."""
+    if driver == compiled_driver.NAME:
+        return pettingzoo_driver.NAME
+    if not hasattr(run.entrant.agent, "_fields"):
+        return driver
+    try:
+        compiled_driver.prepare(conditions, run)
+    except CompilationError:
+        return driver
+    return compiled_driver.NAME
 
 
 def _difference(results: Results, stored: dict[str, object], outcome: Outcome) -> str:

@@ -1,5 +1,7 @@
 """The built-in tournament of all kinds of agents."""
 
+import dataclasses
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +11,7 @@ import pytest
 from agents.registry import BUILT_IN
 from arena import Evaluation, Tournament, Training, field, run
 from arena.configuration import load_tournament
+from arena.statistics import mean_interval
 
 FIXED = ["tutorial", "xiao", "momentum", "random"]
 
@@ -48,3 +51,18 @@ def test_the_search_goes_on_where_it_stopped_and_writes_a_tournament(tmp_path: P
         assert f"# best of {trials} trials" in done.stdout
     found = load_tournament(tmp_path / "found.toml")
     assert [entrant.name for entrant in found.entrants] == ["expected-sarsa", *FIXED]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["watkins-q-lambda", "q-learning", "xiao"])
+def test_the_readme_shows_what_the_field_prints(name: str) -> None:
+    readme = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(rf"^ \S+ +{name} +(\S+ ± \S+) +(\S+) +(\S+) +(\S+)$", readme, re.MULTILINE)
+    whole = field()
+    entrants = tuple(one for one in whole.entrants if one.name == name)
+    with run(dataclasses.replace(whole, entrants=entrants), n_jobs=2) as results:  # others change nothing
+        frame = results.frame()
+    steps, error = mean_interval(frame["steps"])
+    length = frame["mean_length"].mean()
+    told = f"{steps:.1f} ± {error:.1f}", f"{frame['accuracy'].mean():.1f}", f"{length:.1f}"
+    assert shown == (*told, f"{frame['iterations'].mean():,.0f}")

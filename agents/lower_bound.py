@@ -62,7 +62,7 @@ def lower_bound(hill: Hill, positions: Floats, upper: Steps, cells: Steps) -> St
     alone = _segments(positions)
     free = proofs.exclude(alone, upper, proofs.goal)
     most = np.array([free.max()])
-    leaving = proofs.departure(hill)
+    leaving = departure(hill)
     touched = int(proofs.clipped(leaving, proofs.exclude(leaving, most, proofs.goal))[0])
     blocks, block = _blocks(hill, positions)
     longest = np.zeros(len(blocks), np.int64)
@@ -116,21 +116,22 @@ class _Proofs:
         wall = self.exclude(segments, np.maximum(most - touched, 1), self._wall)
         return np.minimum(most, wall + touched)
 
-    def departure(self, hill: Hill) -> Floats:
-        """The states in which a car leaves the wall: the velocities are those after its last touch.
 
-        With the semi-implicit integrator it leaves when its next velocity is positive; an inelastic wall has
-        stopped it before, an elastic one has not. With the explicit one it leaves when its velocity is
-        positive, which it was not in the step before.
-        """
-        car = self._car
-        kick = car.impulse + car.pull
-        if car.explicit:
-            low, high = 0.0, kick
-        else:
-            low, high = (0.0, 0.0) if hill.inelastic_wall else (-kick / car.keep, 0.0)
-        low, high = low - car.slack, high + car.slack
-        return np.array([[hill.min_position, 0.5 * (low + high), 0.0, 0.5 * (high - low)]])
+def departure(hill: Hill) -> Floats:
+    """The states in which a car leaves the wall, as a segment: its velocities after the last touch.
+
+    With the semi-implicit integrator it leaves when its next velocity is positive; an inelastic wall has
+    stopped it before, an elastic one has not. With the explicit one it leaves when its velocity is positive,
+    which it was not in the step before.
+    """
+    car = Relaxed.of(hill)
+    kick = car.impulse + car.pull
+    if car.explicit:
+        low, high = 0.0, kick
+    else:
+        low, high = (0.0, 0.0) if hill.inelastic_wall else (-kick / car.keep, 0.0)
+    low, high = low - car.slack, high + car.slack
+    return np.array([[hill.min_position, 0.5 * (low + high), 0.0, 0.5 * (high - low)]])
 
 
 def _segments(positions: Floats) -> Floats:

@@ -80,9 +80,10 @@ def _bounds(hill: Hill, positions: Floats) -> tuple[Steps, Steps]:
     lower = np.minimum(upper, [cells.flat[cell_of(hill, BINS, position, 0.0)] for position in positions])
     if car.applies:
         open_ = lower < upper
-        upper[open_] = _shortened(hill, car, positions[open_], upper[open_], coast=False)
         proved = lower_bound(hill, positions[open_], upper[open_], cells)
         lower[open_] = np.maximum(lower[open_], proved)
+        open_ = lower < upper
+        upper[open_] = _shortened(hill, car, positions[open_], upper[open_], coast=False)
         open_ = (lower < upper) & (upper <= lower + 2)  # coasting gains no more
         upper[open_] = _shortened(hill, car, positions[open_], upper[open_], coast=True)
     return lower, upper

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from agents import optimal
-from agents.bang_bang import first_pattern, next_pattern
+from agents.bang_bang import first_pattern, next_pattern, shorten
 from agents.boxes import Boxes
 from agents.certificate import Limit, Segment, first_beyond
-from agents.conservative_cells import cell_of, fewest_steps
-from agents.lower_bound import lower_bound
+from agents.conservative_cells import cell_of, fewest_steps, image
+from agents.lower_bound import departure, lower_bound
 from agents.optimal import NEVER, Optimal, optimal_steps
 from agents.switches import MOST, Relaxed, Spacing, patterns, spacing
 from arena import Entrant
@@ -133,17 +133,19 @@ def test_growth_is_the_norm_of_a_steps_matrix(hill: Hill, steepness: float, scal
 
 
 @given(hills(), st.integers(0, 2**32 - 1), st.booleans(), st.sampled_from([1.0, -1.0]))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=150, deadline=None)
 def test_no_drive_of_a_box_is_further_than_the_box(
     hill: Hill, seed: int, of_velocity: bool, sign: float
 ) -> None:
     car, rng, boxes = Relaxed.of(hill), np.random.default_rng(seed), Boxes.make()
-    n, switches = 14, int(rng.integers(3))
+    n = int(rng.choice([1, 2, 3, 14]))  # the fewer, the tighter
+    switches = int(rng.integers(min(n, 3)))
     steps = np.sort(rng.choice(n - 1, switches, replace=False))
     boxes.steps[:switches] = steps
     boxes.halves[0] = rng.choice([0.0, 0.1, 0.5, 1.0], MOST + 1)
     boxes.middles[0] = rng.uniform(-1.0, 1.0, MOST + 1) * (1.0 - boxes.halves[0])
-    start = Segment(-0.5, 0.0, *rng.choice([0.0, 0.01, 0.1], 2) * (1.0, hill.max_velocity))
+    sides = rng.choice([0.0, 0.01, 0.1, 0.5], 2) * (1.0, hill.max_velocity)
+    start = Segment(rng.uniform(-1.2, 0.5), 0.0, *sides)
     for _ in range(10):
         corner = rng.choice([-1.0, 1.0, rng.uniform(-1.0, 1.0)], MOST + 1)
         inside = boxes.middles[0] + boxes.halves[0] * corner
@@ -198,6 +200,36 @@ def test_lower_bounds_hold_against_all_drives(hill: Hill, position: float) -> No
     lower, by_cells = proved(hill, position)
     assert lower <= fewest
     assert by_cells <= fewest or fewest == DEPTH + 1
+
+
+@given(hills(), st.integers(0, 2**32 - 1))
+@settings(max_examples=100, deadline=None)
+def test_an_action_leads_from_a_cell_into_its_image(hill: Hill, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    low = rng.uniform(hill.low, hill.high)
+    high = np.minimum(low + rng.choice([1e-6, 0.01, 0.3], 2) * (1.0, hill.max_velocity), hill.high)
+    for state in (*rng.uniform(low, high, (20, 2)), *itertools.product(*zip(low, high, strict=True))):
+        for action in range(3):
+            (x, v), _, _ = hill.step((float(state[0]), float(state[1])), action)
+            left, right, slowest, fastest = image(hill, tuple(low), tuple(high), action)
+            assert min(left, hill.max_position) - 1e-12 <= x <= max(right, hill.min_position) + 1e-12
+            assert slowest - 1e-12 <= v <= fastest + 1e-12
+
+
+@given(hills(), st.integers(0, 2**32 - 1))
+@settings(max_examples=150, deadline=None)
+def test_car_leaves_the_wall_as_is_said(hill: Hill, seed: int) -> None:
+    assume(Relaxed.of(hill).applies)
+    rng, (segment,) = np.random.default_rng(seed), departure(hill)
+    position, middle, length, half = segment
+    assert (position, length) == (hill.min_position, 0.0)
+    for _ in range(20):
+        state = (float(rng.uniform(hill.min_position, -0.4)), 0.0)
+        for action in rng.integers(3, size=30):
+            following, _, _ = hill.step(state, int(action))
+            if state[0] == hill.min_position < following[0]:
+                assert abs(state[1] - middle) <= half
+            state = following
 
 
 # Hills where a drive that hits the inelastic wall, an instant brake, is shorter by a step.
@@ -288,6 +320,14 @@ def test_optimum_is_that_of_a_search_that_knows_no_theory() -> None:
     assert upper[-4:].tolist() == [104, 102, 91, 83]
 
 
+def test_search_finds_the_shortest_drives_by_itself() -> None:
+    positions, found = np.array([-0.6, -0.5, -0.45, -0.4]), np.full(4, 107)
+    distance = spacing(Relaxed.of(Hill()), of_velocity=False)
+    arguments = (Hill(), positions, distance, found.copy(), False, found, np.zeros(MOST, np.int64))
+    compile_loop(shorten, *arguments)(*arguments)
+    assert found.tolist() == [104, 102, 91, 83]
+
+
 def test_optimum_from_the_default_starts() -> None:
     positions = np.random.default_rng(2).uniform(-0.6, -0.4, 200)
     lower, upper = optimal_steps(Hill(), positions)
@@ -363,7 +403,7 @@ def test_contract(entrant: Any, check: Any) -> None:
 
 
 def test_optimal_driver_needs_the_fewest_steps_from_nearly_all_starts() -> None:
-    positions = np.random.default_rng(3).uniform(-0.6, -0.4, 400)
+    positions = np.random.default_rng(3).uniform(-0.6, -0.4, 250)
     _, upper = optimal_steps(Hill(), positions)
     excess = driven(Hill(), Optimal.create(Hill()), positions) - upper
     assert excess.min() == 0

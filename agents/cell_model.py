@@ -89,7 +89,7 @@ class CellModel(NamedTuple):
         while place < SUCCESSORS and self.counts[pair, place] > 0:
             total += self.counts[pair, place] * worth[self.successors[pair, place]]
             place += 1
-        return self.rewards[pair] + discount * total / self.tries[pair]  # type: ignore[no-any-return]
+        return self.rewards[pair] + discount * total / self.tries[pair]  # type: ignore[no-any-return]  # an array has it
 
     def back_up(
         self,
@@ -115,4 +115,4 @@ class CellModel(NamedTuple):
                 values[cell, action] = self.expected(cell * values.shape[1] + action, worth, discount)
         before = worth[cell]
         worth[cell] = values[cell, best_action(values, cell)]
-        return abs(worth[cell] - before)  # type: ignore[no-any-return]
+        return abs(worth[cell] - before)  # type: ignore[no-any-return]  # an array has it

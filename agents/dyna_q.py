@@ -8,7 +8,6 @@ from annotated_types import Ge
 from numpy.typing import NDArray
 
 from agents.contract import Observation, Task
-from agents.episode import returned
 from agents.inheritance import inherits
 from agents.parameters import NonNegative, validated
 from agents.policies import Counts, Table, best_action
@@ -129,6 +128,6 @@ class DynaQ(Tabular[Recollection]):
         if model.curiosity > 0.0:
             reward += model.curiosity * math.sqrt(model.now[1] - model.times[cell, action])
         next_value = self.values[next_cell, best_action(self.values, next_cell)]
-        target = returned(reward, next_value, goal, update)
+        target = update.target(reward, next_value, goal)
         rate = update.step_size.at(self.visits[cell, action])
         self.values[cell, action] += rate * (target - self.values[cell, action])

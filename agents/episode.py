@@ -1,4 +1,4 @@
-"""Steps of an episode that wait to be learned, and what they return."""
+"""Steps of an episode that wait to be learned."""
 
 from typing import NamedTuple, Self
 
@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.policies import Counts
-from agents.updates import GoalRule, Update
 
 
 class Steps(NamedTuple):
@@ -42,20 +41,4 @@ class Steps(NamedTuple):
 
     def back(self, steps: int) -> int:
         """The place of the step so many before the one to come, from the end if below 0; 1 is the newest."""
-        return self.now[0] - steps  # type: ignore[no-any-return]
-
-
-def returned(reward: float, following: float, terminated: bool, update: Update) -> float:
-    """What a step returns: its target in Eq. (15).
-
-    Args:
-        reward: of the step.
-        following: what the next step returns, or its value.
-        terminated: whether the step reached the goal.
-        update: knows the discount, and what follows the goal.
-    """
-    if terminated and update.goal == GoalRule.ZERO:
-        return 0.0
-    if terminated and update.goal == GoalRule.TERMINAL:
-        return reward
-    return reward + update.discount * following
+        return self.now[0] - steps  # type: ignore[no-any-return]  # an array has it

@@ -32,7 +32,7 @@ class EpsilonGreedy(NamedTuple):
         for action in range(values.shape[1]):
             total += values[cell, action]
         mean, best = total / values.shape[1], values[cell, best_action(values, cell)]
-        return epsilon * mean + (1.0 - epsilon) * best  # type: ignore[no-any-return]
+        return epsilon * mean + (1.0 - epsilon) * best  # type: ignore[no-any-return]  # an array has it
 
 
 class _Temperatures(NamedTuple):
@@ -40,7 +40,7 @@ class _Temperatures(NamedTuple):
     end: float
 
 
-class Softmax(Validated, _Temperatures):  # type: ignore[misc]
+class Softmax(Validated, _Temperatures):  # type: ignore[misc]  # both have _make
     """Actions with probabilities in proportion to ``exp(value / temperature)`` (Sutton & Barto 2018, 13.1).
 
     Args:
@@ -90,7 +90,7 @@ class _Confidence(NamedTuple):
     c: float
 
 
-class UpperConfidence(Validated, _Confidence):  # type: ignore[misc]
+class UpperConfidence(Validated, _Confidence):  # type: ignore[misc]  # both have _make
     """The action with the greatest ``value + c sqrt(ln N / n)``, one untried before all others.
 
     UCB1 (Auer et al. 2002; Sutton & Barto 2018, 2.7), with N the visits of the cell and n those in which
@@ -126,7 +126,7 @@ class UpperConfidence(Validated, _Confidence):  # type: ignore[misc]
 
     def expected(self, values: Table, visits: Counts, cell: int, progress: float) -> float:
         """The value of the action that is the best so far: what is tried beside it is curiosity."""
-        return values[cell, best_action(values, cell)]  # type: ignore[no-any-return]
+        return values[cell, best_action(values, cell)]  # type: ignore[no-any-return]  # an array has it
 
 
 Exploration = EpsilonGreedy | Softmax | UpperConfidence
@@ -136,4 +136,4 @@ def make_exploration(epsilon: LinearDecay | float, explore: Softmax | UpperConfi
     """``explore`` if it is given, else epsilon-greedy; a number is a constant epsilon."""
     if explore is not None:
         return explore
-    return EpsilonGreedy(epsilon if isinstance(epsilon, LinearDecay) else LinearDecay(epsilon, epsilon))
+    return EpsilonGreedy(LinearDecay.of(epsilon))

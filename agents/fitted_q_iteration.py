@@ -107,7 +107,7 @@ class FittedQIteration:
             task.n_actions,
             Batch.room_for(memory, len(task.low)),
             Fit(discount, every, growths, iterations, trees, leaf),
-            epsilon if isinstance(epsilon, LinearDecay) else LinearDecay(epsilon, epsilon),
+            LinearDecay.of(epsilon),
             hold,
             rng or np.random.default_rng(),
         )

@@ -59,7 +59,7 @@ class Grid(_Parts):
         return super().__new__(cls, lows, highs, counts, scales, edges)
 
     @classmethod
-    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]
+    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]  # mypy adds new=, len=
         low, high, bins, *_ = iterable  # the rest follows from these
         return cls(low, high, bins)
 

@@ -36,7 +36,7 @@ def inherits(
         unknown = defaults.keys() - {one.name for one in taken}
         if unknown:
             raise TypeError(f"defaults must be those of inherited parameters, got {sorted(unknown)}")
-        create.__signature__ = own.replace(parameters=[*kept, *taken])  # type: ignore[attr-defined]
+        create.__signature__ = own.replace(parameters=[*kept, *taken])  # type: ignore[attr-defined]  # for inspect
         create.__annotations__ = {one.name: annotations[one.name] for one in taken} | create.__annotations__
         return create
 

@@ -79,7 +79,7 @@ class Linear(NamedTuple, Generic[Memory]):
             np.zeros((features.size, task.n_actions)),
             step_size / features.active,
             discount,
-            epsilon if isinstance(epsilon, LinearDecay) else LinearDecay(epsilon, epsilon),
+            LinearDecay.of(epsilon),
             Scratch(np.zeros(features.active, np.int64), np.zeros(features.active, np.int64)),
             cast("Memory", None),  # an agent with more to keep puts it here
         )

@@ -5,7 +5,7 @@ from typing import Any, Self
 import numpy as np
 
 from agents.contract import Observation, Task
-from agents.episode import Steps, returned
+from agents.episode import Steps
 from agents.inheritance import inherits
 from agents.parameters import Count, validated
 from agents.tabular import Tabular
@@ -77,6 +77,6 @@ class MonteCarlo(Tabular[Steps]):
             place = steps.back(age)
             cell, action, reward = steps.cells[place], steps.actions[place], steps.rewards[place]
             self.update.apply(self.values, self.visits, cell, action, reward, following, goal)
-            following = returned(reward, following, goal, self.update)
+            following = self.update.target(reward, following, goal)
             goal = False
         steps.now[1] = 0

@@ -5,7 +5,7 @@ from typing import Any, Self
 import numpy as np
 
 from agents.contract import Observation, Task
-from agents.episode import Steps, returned
+from agents.episode import Steps
 from agents.inheritance import inherits
 from agents.parameters import Count, validated
 from agents.tabular import Tabular
@@ -76,7 +76,7 @@ class NStepSarsa(Tabular[Steps]):
         waiting, place = steps.now[1], steps.now[0]
         following, goal = self.values[steps.cells[place], steps.actions[place]], terminated
         for age in range(1, waiting):
-            following = returned(steps.rewards[steps.back(age)], following, goal, self.update)
+            following = self.update.target(steps.rewards[steps.back(age)], following, goal)
             goal = False
         place = steps.back(waiting)
         cell, action, reward = steps.cells[place], steps.actions[place], steps.rewards[place]

@@ -49,7 +49,7 @@ class PriorityQueue(NamedTuple):
         self.length[0] -= 1
         if self.length[0] > 0:
             self.sink(self.heap[self.length[0]], 0)
-        return number  # type: ignore[no-any-return]
+        return number  # type: ignore[no-any-return]  # an array has it
 
     def sink(self, number: int, place: int) -> None:
         """Move ``number`` to ``place``, or so far below that nothing under it has a greater priority."""
@@ -70,4 +70,4 @@ class PriorityQueue(NamedTuple):
 
     def priority_at(self, place: int) -> float:
         """The priority of the number at ``place``."""
-        return self.priorities[self.heap[place]]  # type: ignore[no-any-return]
+        return self.priorities[self.heap[place]]  # type: ignore[no-any-return]  # an array has it

@@ -10,6 +10,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from agents.contract import Agent
 from agents.double_q_learning import DoubleQLearning
 from agents.dyna_q import DynaQ
 from agents.expected_sarsa import ExpectedSarsa
@@ -50,9 +51,7 @@ BUILT_IN: dict[str, type[Any]] = {
 }
 
 _METHODS = {
-    "act": ("observation", "progress", "rng"),
-    "learn": ("observation", "action", "reward", "next_observation", "next_action", "terminated"),
-    "greedy": ("observation",),
+    name: tuple(inspect.signature(getattr(Agent, name)).parameters)[1:] for name in ("act", "learn", "greedy")
 }
 
 

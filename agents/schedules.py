@@ -11,7 +11,7 @@ class _Line(NamedTuple):
     until: float
 
 
-class LinearDecay(Validated, _Line):  # type: ignore[misc]
+class LinearDecay(Validated, _Line):  # type: ignore[misc]  # both have _make
     """From ``start`` to ``end`` in a straight line over the training (paper, section 4.3).
 
     Args:
@@ -29,6 +29,11 @@ class LinearDecay(Validated, _Line):  # type: ignore[misc]
         start, end = number("start", start, 0, 1), number("end", end, 0, 1)
         return super().__new__(cls, start, end, number("until", until, 0, 1, above=True))
 
+    @classmethod
+    def of(cls, value: Self | float) -> Self:
+        """``value`` itself, a number as a constant."""
+        return value if isinstance(value, cls) else cls(value, value)  # type: ignore[arg-type]  # a number then
+
     def at(self, progress: float) -> float:
         """The value when the share ``progress`` of the episodes is done."""
         if progress >= self.until:
@@ -42,7 +47,7 @@ class _Harmonic(NamedTuple):
     C: float
 
 
-class HarmonicRate(Validated, _Harmonic):  # type: ignore[misc]
+class HarmonicRate(Validated, _Harmonic):  # type: ignore[misc]  # both have _make
     """Step size ``A / (B + C n)`` after n visits (paper, Eq. 15); ``C = 0`` is the constant A / B.
 
     Args:

@@ -63,7 +63,7 @@ class TileCoding(_Parts):
         )
 
     @classmethod
-    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]
+    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]  # mypy adds new=, len=
         low, high, tilings, tiles, *_ = iterable  # the rest follows from these
         return cls(low, high, tilings, tiles)
 

@@ -62,15 +62,25 @@ class Update(NamedTuple):
         if terminated and self.goal == GoalRule.ZERO:
             values[cell, action] = 0.0
             return
-        target = reward
-        if not terminated or self.goal == GoalRule.BOOTSTRAP:
-            target += self.discount * next_value
+        target = self.target(reward, next_value, terminated)
         values[cell, action] += rate * (target - values[cell, action])
+
+    def target(self, reward: float, following: float, terminated: bool) -> float:
+        """What a step returns: its target in Eq. (15).
+
+        Args:
+            reward: of the step.
+            following: what the next step returns, or its value.
+            terminated: whether the step reached the goal.
+        """
+        if not terminated or self.goal == GoalRule.BOOTSTRAP:
+            return reward + self.discount * following
+        return reward if self.goal == GoalRule.TERMINAL else 0.0
 
     def earlier(self, visits: Counts, cell: int, action: int) -> int:
         """The number n of Eq. (15); where episodes are counted, this one is from now on."""
         if self.counting == Counting.STEP:
-            return visits[cell, action]  # type: ignore[no-any-return]
+            return visits[cell, action]  # type: ignore[no-any-return]  # an array has it
         if self.counting == Counting.STATE:
             total = 0
             for other in range(visits.shape[1]):
@@ -79,7 +89,7 @@ class Update(NamedTuple):
         if self.latest[cell, action] != self.now[0]:
             self.latest[cell, action] = self.now[0]
             self.episodes[cell, action] += 1
-        return self.episodes[cell, action] - 1  # type: ignore[no-any-return]
+        return self.episodes[cell, action] - 1  # type: ignore[no-any-return]  # an array has it
 
 
 def make_update(

@@ -11,6 +11,7 @@ import numpy as np
 from arena import compiled_driver, pettingzoo_driver
 from arena.checkpoint import checkpoint_of, savable
 from arena.entrant import Entrant
+from arena.loops import listener
 from arena.outcome import Outcome, agent_arrays
 from arena.tournament import Conditions, Evaluation, Run, Training
 from envs import Hill
@@ -56,10 +57,10 @@ def check_independent_of_others(entrant: Entrant) -> None:
     other = Entrant(f"{entrant.name} beside it", entrant.agent, **entrant.parameters)
     random.seed(1)
     np.random.seed(1)  # noqa: NPY002 (agents must not use it)
-    state, legacy = random.getstate(), np.random.get_state()[1].copy()  # type: ignore[index] # noqa: NPY002
+    state, legacy = random.getstate(), np.random.get_state()[1].copy()  # type: ignore[index] # noqa: NPY002 (a tuple; see above)
     together = pettingzoo_driver.race(_CONDITIONS, [Run(other, 0), Run(entrant, 0)])[1]
     _same(alone, together, "a run beside another entrant, with other global random numbers,")
-    unused = random.getstate() == state and np.array_equal(np.random.get_state()[1], legacy)  # type: ignore[index] # noqa: NPY002
+    unused = random.getstate() == state and np.array_equal(np.random.get_state()[1], legacy)  # type: ignore[index] # noqa: NPY002 (a tuple; see above)
     _hold(unused, "it draws from the global random numbers; all must come from the rng that it is given")
 
 
@@ -112,8 +113,8 @@ def check_survives_hostile_transitions(entrant: Entrant) -> None:
     """1,000 transitions that no hill makes leave no NaN, index no array beyond its end, and raise nothing."""
     agent, rng = _create(entrant), np.random.default_rng(4)
     places = list(_observations())
-    listening = getattr(agent, "begin_episode", lambda: None)
-    listening()
+    ears = listener(agent)
+    ears.begin_episode()
     for step in range(_HOSTILE):
         here, there = (places[rng.integers(len(places))] for _ in range(2))
         action = _valid(agent.act(here, step / _HOSTILE, rng), f"act({here})")
@@ -121,7 +122,7 @@ def check_survives_hostile_transitions(entrant: Entrant) -> None:
         ended = bool(rng.random() < 0.05)
         agent.learn(here, action, -1.0, there, following, ended)
         if ended or rng.random() < 0.02:
-            listening()
+            ears.begin_episode()
     for name, array in agent_arrays(agent).items():
         if np.issubdtype(array.dtype, np.inexact):
             _hold(not np.isnan(array).any(), f"{name} has NaN after hostile transitions")
@@ -166,7 +167,7 @@ def _trained(entrant: Entrant) -> Any:
     agent, rng = _create(entrant), np.random.default_rng(5)
     for _ in range(3):
         state = _HILL.reset(rng)
-        getattr(agent, "begin_episode", lambda: None)()
+        listener(agent).begin_episode()
         action = agent.act(np.array(_HILL.observe(state)), 0.5, rng)
         for _ in range(150):
             before = np.array(_HILL.observe(state))

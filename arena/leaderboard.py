@@ -64,8 +64,7 @@ class Leaderboard:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None; each estimate as value, low and high."""
-        found: dict[str, Any] = without_nan(asdict(self, dict_factory=named))
-        return found
+        return as_plain(self)
 
     def frame(self) -> "pd.DataFrame":
         """A row an entrant; a score has columns for its mean and both ends of the interval."""
@@ -154,8 +153,13 @@ def _places_at(config: dict[str, Any], scores: Scores, confidence: float) -> tup
     return 1.0 - look.level, (f"The first {whose} {told} ({at}).",)
 
 
-def named(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """For ``asdict``: estimates by the names of their parts."""
+def as_plain(record: Any) -> dict[str, Any]:
+    """The dataclass as plain values, NaN as None; estimates by the names of their parts."""
+    found: dict[str, Any] = without_nan(asdict(record, dict_factory=_by_name))
+    return found
+
+
+def _by_name(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return {name: _named(value) for name, value in pairs}
 
 

@@ -1,11 +1,10 @@
 """Two entrants side by side, and two files of one tournament: what is better, worse, or chance."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
-from arena.comparison import without_nan
-from arena.leaderboard import check_confidence, named
-from arena.places import holm, paired_permutation_test, sign_flip_test, too_few
+from arena.leaderboard import as_plain, check_confidence
+from arena.places import at_most, holm, paired_permutation_test, sign_flip_test, too_few
 from arena.results import Results
 from arena.scores import SCORES, Bounds, Floats, Scores, scores_of
 from arena.statistics import (
@@ -46,8 +45,7 @@ class Duel:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None."""
-        found: dict[str, Any] = without_nan(asdict(self, dict_factory=named))
-        return found
+        return as_plain(self)
 
 
 def compare_entrants(
@@ -94,7 +92,7 @@ def compare_entrants(
 
 
 def _verdict(a: str, b: str, difference: float, p_value: float, confidence: float, count: int) -> str:
-    if p_value <= (1.0 - confidence) * (1.0 + 1e-9):
+    if at_most(p_value, 1.0 - confidence):
         return f"{a if difference < 0.0 else b} is better than {b if difference < 0.0 else a}."
     return too_few(count, 1, confidence) or "They cannot be told apart."
 
@@ -121,8 +119,7 @@ class Change:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None."""
-        found: dict[str, Any] = without_nan(asdict(self, dict_factory=named))
-        return found
+        return as_plain(self)
 
 
 def regressions(
@@ -175,7 +172,7 @@ def regressions(
             float(now[i].mean()),
             mean_estimate(worse[i], confidence),
             float(p_values[i]),
-            bool(p_values[i] <= (1.0 - confidence) * (1.0 + 1e-9)),
+            bool(at_most(p_values[i], 1.0 - confidence)),
         )
         for i, name in enumerate(names)
     )

@@ -67,7 +67,7 @@ def smallest_p(replicates: int, *, one_sided: bool = False) -> float:
 def needed_replicates(comparisons: int, level: float, *, one_sided: bool = False) -> int | None:
     """How many it takes so that so many tests can show a difference at all; None if no number does."""
     for replicates in range(1, EXACT + 1):
-        if _at_most(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
+        if at_most(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
             return replicates
     return None
 
@@ -75,7 +75,7 @@ def needed_replicates(comparisons: int, level: float, *, one_sided: bool = False
 def too_few(replicates: int, comparisons: int, confidence: float, *, one_sided: bool = False) -> str:
     """Why so many replicates can show nothing, in one sentence; empty if they can."""
     level = 1.0 - confidence
-    if _at_most(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
+    if at_most(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
         return ""
     needed = needed_replicates(comparisons, level, one_sided=one_sided)
     return (
@@ -149,13 +149,13 @@ def tie_groups(costs: ArrayLike, confidence: float = 0.95, seed: int = 0) -> Tie
         p_values[above] = holm(sign_flip_test(values[above[0]] - values[above[1]], seed=seed))
     p_values = np.minimum(p_values, p_values.T)
     means = values.mean(axis=1) if count else np.zeros(entrants)
-    apart = _at_most(p_values, 1.0 - confidence)
+    apart = at_most(p_values, 1.0 - confidence)
     better = apart & (means[:, None] < means[None, :])
     return Ties(p_values, better, 1 + better.sum(axis=0), entrants - better.sum(axis=1))
 
 
-def _at_most(p: Any, level: float) -> Any:
-    """Whether ``p`` is within the level; 1 - 0.95 is a little more than 0.05."""
+def at_most(p: Any, level: float) -> Any:
+    """Whether ``p``, a number or an array, is within the level; 1 - 0.95 is a little more than 0.05."""
     return p <= level * (1.0 + 1e-9)
 
 

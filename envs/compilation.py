@@ -89,7 +89,7 @@ def _compile(
         except Exception as error:  # numba raises nearly anything
             problem = error
         else:
-            return kernel  # type: ignore[no-any-return]
+            return kernel  # type: ignore[no-any-return]  # numba is untyped
     raise CompilationError(_reason(problem)) from problem
 
 
@@ -129,7 +129,7 @@ def _offer_attributes() -> None:
     from numba import types
     from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr
 
-    class PlainMethods(AttributeTemplate):  # type: ignore[misc]
+    class PlainMethods(AttributeTemplate):  # type: ignore[misc]  # the base is untyped
         key = types.BaseNamedTuple
 
         def generic_resolve(self, typ: Any, name: str) -> Any:
@@ -137,7 +137,7 @@ def _offer_attributes() -> None:
             if method not in _offered:
                 return None
 
-            class Call(AbstractTemplate):  # type: ignore[misc]
+            class Call(AbstractTemplate):  # type: ignore[misc]  # the base is untyped
                 key = _lowering_key(method)
 
                 def generic(self, args: Any, kws: Any) -> Any:

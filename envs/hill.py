@@ -48,7 +48,7 @@ class _Constants(NamedTuple):
     integrator: Integrator
 
 
-class Hill(Validated, _Constants):  # type: ignore[misc]
+class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
     """A car with a thruster on the hill ``y = sin(omega x)``; by default Eq. (7) of the paper.
 
     An immutable named tuple of constants. A state is ``(position, velocity)``; the actions are

@@ -37,7 +37,7 @@ def raw_env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
     return parallel_to_aec(parallel_env(**arguments))
 
 
-class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]
+class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  # the base is untyped
     """Several cars that drive at the same time and do not touch each other.
 
     Args:

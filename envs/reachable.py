@@ -56,7 +56,7 @@ class Reached:
             self._visit_code(found.py_func)
         elif hasattr(found, "_fields"):
             self._visit_class(type(found))
-            for value in found:  # type: ignore[attr-defined]
+            for value in found:  # type: ignore[attr-defined]  # a named tuple
                 self._visit(value)
 
     def _visit_class(self, cls: type) -> None:

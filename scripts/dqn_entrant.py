@@ -16,10 +16,10 @@ from typing import Any, Self
 
 import gymnasium
 import numpy as np
-import torch  # type: ignore[import-not-found, unused-ignore]
-from stable_baselines3 import DQN  # type: ignore[import-not-found, unused-ignore]
-from stable_baselines3.common.logger import Logger  # type: ignore[import-not-found, unused-ignore]
-from stable_baselines3.common.utils import polyak_update  # type: ignore[import-not-found, unused-ignore]
+import torch  # type: ignore[import-not-found, unused-ignore]  # optional
+from stable_baselines3 import DQN  # type: ignore[import-not-found, unused-ignore]  # optional
+from stable_baselines3.common.logger import Logger  # type: ignore[import-not-found, unused-ignore]  # optional
+from stable_baselines3.common.utils import polyak_update  # type: ignore[import-not-found, unused-ignore]  # optional
 
 from agents import QLearning
 from agents.parameters import Count, NonNegative, Positive, Probability

@@ -120,10 +120,7 @@ def steps(name: str, parameters: dict[str, Any]) -> float:
         (entrant,), training=TRAINING, evaluation=EVALUATION, replicates=REPLICATES, seed=SEED
     )
     with run(tournament) as results:
-        frame = results.frame()
-    limit = EVALUATION.max_steps
-    share = frame["accuracy"].fillna(0.0) / 100.0
-    return float((share * frame["mean_length"].fillna(limit) + (1.0 - share) * limit).mean())
+        return float(results.frame()["steps"].fillna(EVALUATION.max_steps).mean())
 
 
 def tune(name: str, trials: int) -> optuna.Study:

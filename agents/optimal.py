@@ -18,7 +18,7 @@ from agents.contract import Observation
 from agents.grid import Grid
 from agents.lower_bound import affordable, lower_bound
 from agents.parameters import Count, validated
-from agents.references import MomentumAgent
+from agents.references import DoesNotLearn, MomentumAgent
 from agents.switches import FAR, MOST, Relaxed, spacing
 from envs import Hill
 from envs.checks import instance, number
@@ -124,7 +124,12 @@ def _shortened(hill: Hill, car: Relaxed, positions: Floats, found: Steps, *, coa
     return found
 
 
-class Optimal(NamedTuple):
+class _Table(NamedTuple):
+    cells: Grid
+    actions: NDArray[np.int8]
+
+
+class Optimal(DoesNotLearn, _Table):
     """Drives by a table of best actions, computed from the hill's constants; it learns nothing.
 
     On the default hill it needs the fewest steps from all but about one start in a thousand, and there one
@@ -135,8 +140,7 @@ class Optimal(NamedTuple):
         actions: the action in each, int8, shape (cells,), read-only.
     """
 
-    cells: Grid
-    actions: NDArray[np.int8]
+    __slots__ = ()
 
     @classmethod
     @validated
@@ -152,21 +156,6 @@ class Optimal(NamedTuple):
                 its rule.
         """
         return cls(*_table(instance("task", task, Hill), bins))
-
-    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
-        """The same as ``greedy``."""
-        return self.greedy(observation)
-
-    def learn(
-        self,
-        observation: Observation,
-        action: int,
-        reward: float,
-        next_observation: Observation,
-        next_action: int,
-        terminated: bool,
-    ) -> None:
-        """Nothing."""
 
     def greedy(self, observation: Observation) -> int:
         """The best action of the observation's cell."""

@@ -7,46 +7,10 @@ import numpy as np
 from agents.contract import Observation, Task
 
 
-class RandomAgent(NamedTuple):
-    """Any action, all equally likely, always: the random walk of section 3.2 of the paper."""
+class DoesNotLearn:
+    """Mixin of a named tuple that always drives as ``greedy`` says."""
 
-    n_actions: int
-    rng: np.random.Generator
-
-    @classmethod
-    def create(cls, task: Task, *, rng: np.random.Generator | None = None) -> Self:
-        """The agent; ``rng`` chooses its actions when it is evaluated."""
-        return cls(task.n_actions, rng or np.random.default_rng())
-
-    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
-        """A random action."""
-        return int(rng.random() * self.n_actions)
-
-    def learn(
-        self,
-        observation: Observation,
-        action: int,
-        reward: float,
-        next_observation: Observation,
-        next_action: int,
-        terminated: bool,
-    ) -> None:
-        """Nothing."""
-
-    def greedy(self, observation: Observation) -> int:
-        """A random action: the policy that is evaluated is the one that drove."""
-        return int(self.rng.random() * self.n_actions)
-
-
-class FixedAgent(NamedTuple):
-    """Drives the same way always; ``greedy`` of its subclasses says how."""
-
-    last_action: int
-
-    @classmethod
-    def create(cls, task: Task) -> Self:
-        """The agent; it has no parameters."""
-        return cls(task.n_actions - 1)
+    __slots__ = ()
 
     def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
         """The same as ``greedy``."""
@@ -66,6 +30,45 @@ class FixedAgent(NamedTuple):
     def greedy(self, observation: Observation) -> int:
         """What to do."""
         raise NotImplementedError
+
+
+class _Chance(NamedTuple):
+    n_actions: int
+    rng: np.random.Generator
+
+
+class RandomAgent(DoesNotLearn, _Chance):
+    """Any action, all equally likely, always: the random walk of section 3.2 of the paper."""
+
+    __slots__ = ()
+
+    @classmethod
+    def create(cls, task: Task, *, rng: np.random.Generator | None = None) -> Self:
+        """The agent; ``rng`` chooses its actions when it is evaluated."""
+        return cls(task.n_actions, rng or np.random.default_rng())
+
+    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
+        """A random action."""
+        return int(rng.random() * self.n_actions)
+
+    def greedy(self, observation: Observation) -> int:
+        """A random action: the policy that is evaluated is the one that drove."""
+        return int(self.rng.random() * self.n_actions)
+
+
+class _LastAction(NamedTuple):
+    last_action: int
+
+
+class FixedAgent(DoesNotLearn, _LastAction):
+    """Knows how many actions there are, and nothing else."""
+
+    __slots__ = ()
+
+    @classmethod
+    def create(cls, task: Task) -> Self:
+        """The agent; it has no parameters."""
+        return cls(task.n_actions - 1)
 
 
 class MomentumAgent(FixedAgent):

@@ -15,6 +15,7 @@ from agents.cells import Binning, Bins, Cells, make_cells
 from agents.contract import Observation
 from agents.parameters import Count, Probability, validated
 from agents.policies import Counts, Table, best_action
+from agents.references import DoesNotLearn
 from envs.compilation import compile_loop
 
 _SWEEPS, _TOLERANCE = 5000, 1e-6  # of value iteration
@@ -26,7 +27,13 @@ _ROBERTS = (
 _STARTS, _PATIENCE = 100, 500  # of the drives by which a policy is judged
 
 
-class GridPlanner(NamedTuple):
+class _Plan(NamedTuple):
+    cells: Cells
+    values: Table
+    policy: Counts
+
+
+class GridPlanner(DoesNotLearn, _Plan):
     """Knows the hill but sees cells: drives by the solution of the digitized model. It learns nothing.
 
     In the digitized model the car is, in each step anew, anywhere in its cell, all places equally likely.
@@ -42,9 +49,7 @@ class GridPlanner(NamedTuple):
         policy: the action in each cell, shape (cells,).
     """
 
-    cells: Cells
-    values: Table
-    policy: Counts
+    __slots__ = ()
 
     @classmethod
     @validated
@@ -86,21 +91,6 @@ class GridPlanner(NamedTuple):
             search = (task, cells, starts, polish, shape[1], policy, np.zeros(cells.size, np.int64))
             compile_loop(improve, *search)(*search)
         return cls(cells, values, policy)
-
-    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
-        """The same as ``greedy``."""
-        return self.greedy(observation)
-
-    def learn(
-        self,
-        observation: Observation,
-        action: int,
-        reward: float,
-        next_observation: Observation,
-        next_action: int,
-        terminated: bool,
-    ) -> None:
-        """Nothing."""
 
     def greedy(self, observation: Observation) -> int:
         """The planned action of the observation's cell."""

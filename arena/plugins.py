@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from agents.references import DoesNotLearn
 from agents.registry import forget, register
 
 
@@ -104,30 +105,11 @@ def source_of(*classes: type[Any]) -> tuple[PluginSource, ...]:
     return tuple(plugin for plugin in plugins if plugin is not None)
 
 
-class Unavailable:
+class Unavailable(DoesNotLearn):
     """Stands in for an agent of a broken plugin: its runs fail, and say why."""
 
     def __init__(self, *, agent: str, reason: str) -> None:
         raise ImportError(f"agent {agent!r} is not available: {reason}")
-
-    def act(self, observation: Any, progress: Any, rng: Any) -> int:
-        """Never called."""
-        raise NotImplementedError
-
-    def learn(
-        self,
-        observation: Any,
-        action: Any,
-        reward: Any,
-        next_observation: Any,
-        next_action: Any,
-        terminated: Any,
-    ) -> None:
-        """Never called."""
-
-    def greedy(self, observation: Any) -> int:
-        """Never called."""
-        raise NotImplementedError
 
 
 def _revive(module: str, path: str, text: str) -> PluginSource:

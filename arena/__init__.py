@@ -6,10 +6,12 @@ from arena.plugins import load_plugin
 from arena.results import Results, load
 from arena.runner import run
 from arena.tournament import Evaluation, Tournament, Training
+from arena.walks import RandomWalk, random_walk
 
 __all__ = [
     "Entrant",
     "Evaluation",
+    "RandomWalk",
     "Results",
     "Tournament",
     "Training",
@@ -18,6 +20,7 @@ __all__ = [
     "load_plugin",
     "paper",
     "quick",
+    "random_walk",
     "run",
     "sweep",
 ]

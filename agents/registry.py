@@ -14,8 +14,10 @@ from agents.contract import Agent
 from agents.double_q_learning import DoubleQLearning
 from agents.dyna_q import DynaQ
 from agents.expected_sarsa import ExpectedSarsa
+from agents.fitted_q_iteration import FittedQIteration
 from agents.monte_carlo import MonteCarlo
 from agents.n_step_sarsa import NStepSarsa
+from agents.optimal import Optimal
 from agents.prioritized_sweeping import PrioritizedSweeping
 from agents.q_learning import QLearning
 from agents.r_max import RMax
@@ -25,6 +27,7 @@ from agents.sarsa_lambda import SarsaLambda
 from agents.semi_gradient_sarsa import SemiGradientSarsa
 from agents.true_online_sarsa import TrueOnlineSarsa
 from agents.tutorial import TutorialQLearning
+from agents.value_iteration import GridPlanner
 from agents.watkins_q_lambda import WatkinsQLambda
 from envs.checks import choice
 
@@ -44,10 +47,13 @@ BUILT_IN: dict[str, type[Any]] = {
     "sarsa-lambda": SarsaLambda,
     "true-online-sarsa": TrueOnlineSarsa,
     "watkins-q-lambda": WatkinsQLambda,
+    "fitted-q-iteration": FittedQIteration,
     "tutorial": TutorialQLearning,
     "xiao": XiaoAgent,
     "random": RandomAgent,
     "momentum": MomentumAgent,
+    "value-iteration": GridPlanner,
+    "optimal": Optimal,
 }
 
 _METHODS = {

@@ -143,7 +143,7 @@ def toml(value: Any) -> str:
     """A plain value as TOML."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{key} = {toml(part)}" for key, part in value.items()) + " }"
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return "[" + ", ".join(map(toml, value)) + "]"
     if isinstance(value, float):
         return f"{value:.6g}" if "." in f"{value:.6g}" or "e" in f"{value:.6g}" else f"{value:.1f}"
@@ -153,14 +153,16 @@ def toml(value: Any) -> str:
 def describe(study: optuna.Study) -> str:
     """The best trial as an entrant of a tournament file."""
     best = study.best_trial
-    lines = [
-        f"# best of {len(study.trials)} trials: {best.value:.2f} steps on the seeds of the search",
-        "[[entrants]]",
-        f'name = "{study.study_name}"',
-        f'agent = "{ENTRANTS[study.study_name][0]}"',
-        "[entrants.parameters]",
-        *(f"{key} = {toml(value)}" for key, value in best.user_attrs["parameters"].items()),
-    ]
+    found = f"# best of {len(study.trials)} trials: {best.value:.2f} steps on the seeds of the search"
+    name, agent = study.study_name, ENTRANTS[study.study_name][0]
+    return f"{found}\n{entry(agent, best.user_attrs['parameters'], name)}"
+
+
+def entry(agent: str, parameters: dict[str, Any], name: str | None = None) -> str:
+    """An entrant of a tournament file."""
+    lines = ["[[entrants]]", *([f'name = "{name}"'] if name else []), f'agent = "{agent}"']
+    if parameters:
+        lines += ["[entrants.parameters]", *(f"{key} = {toml(value)}" for key, value in parameters.items())]
     return "\n".join(lines)
 
 
@@ -173,8 +175,15 @@ episodes = {TRAINING.episodes}
 max_steps = {TRAINING.max_steps}
 """
 
-# Entrants without anything to search for.
-FIXED = ("tutorial", "xiao", "momentum", "random")
+# Entrants without anything to search for. Fitted Q iteration is not here: it is for tens of episodes.
+FIXED: dict[str, dict[str, Any]] = {
+    "tutorial": {},
+    "xiao": {},
+    "momentum": {},
+    "random": {},
+    "value-iteration": {"bins": (40, 40), "polish": 20},
+    "optimal": {},
+}
 
 
 def main() -> None:
@@ -192,7 +201,7 @@ def main() -> None:
         told.append(describe(study))
         print(told[-1], end="\n\n", flush=True)
     if arguments.write:
-        told += [f'[[entrants]]\nagent = "{name}"' for name in FIXED]
+        told += [entry(agent, parameters) for agent, parameters in FIXED.items()]
         arguments.write.write_text("\n".join([HEAD, "\n\n".join(told), ""]), encoding="utf-8")
 
 

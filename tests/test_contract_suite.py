@@ -29,11 +29,14 @@ LOCK = threading.Lock()
 FEW_TILES = {"tilings": 2, "tiles": (4, 4)}
 SMALL: dict[str, dict[str, Any]] = {
     "dyna-q": {"planning": 2},
+    "fitted-q-iteration": {"every": 1, "growths": 2, "iterations": 2, "trees": 2, "resolution": 8},
+    "optimal": {"bins": 60},
     "prioritized-sweeping": {"bins": (6, 6), "planning": 2},
     "r-max": {"bins": (5, 5), "known": 2, "sweeps": 5},
     "sarsa-lambda": FEW_TILES,
     "semi-gradient-sarsa": FEW_TILES,
     "true-online-sarsa": FEW_TILES,
+    "value-iteration": {"bins": (6, 6), "samples": 5, "polish": 1},
     "watkins-q-lambda": FEW_TILES,
 }
 

@@ -9,6 +9,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,14 @@ def race(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     Path("race.toml").write_text(RACE)
     return tmp_path / "runs" / "race.sqlite"
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Ctrl-C reaches the children even of a suite in the background, where shells let it be ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def start(*options: str) -> subprocess.Popen[bytes]:
@@ -50,6 +59,7 @@ def test_killed_at_twenty_random_moments_and_continued_the_digest_is_that_of_an_
 
 
 @POSIX
+@pytest.mark.usefixtures("interruptible")
 def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
     Path("race.toml").write_text(RACE.replace("replicates = 8", "replicates = 60"))
     process = start("--seed", "3")

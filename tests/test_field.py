@@ -13,7 +13,7 @@ from arena import Evaluation, Tournament, Training, field, run
 from arena.configuration import load_tournament
 from arena.statistics import mean_interval
 
-FIXED = ["tutorial", "xiao", "momentum", "random"]
+FIXED = ["tutorial", "xiao", "momentum", "random", "value-iteration", "optimal"]
 
 
 def test_every_built_in_agent_that_races_in_a_moment_is_in_the_field() -> None:

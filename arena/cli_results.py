@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from contextlib import AbstractContextManager, nullcontext
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -40,7 +41,7 @@ def show(
     """Print the leaderboard of a results file; of the paper's tournament its tables, unless --by is given."""
     if as_json and as_csv:
         raise ValueError("--json and --csv must not be given together")
-    with load(file) as results:
+    with load(file) as results, _patience(by):
         print_results(results, by.value if by else None, confidence, as_json=as_json, as_csv=as_csv)
 
 
@@ -87,7 +88,7 @@ def compare(
     """Compare two entrants, or a file with a baseline: exit with 1 if an entrant got worse beyond chance."""
     if (baseline is None) == (a is None or b is None) or (baseline is not None and a is not None):
         raise ValueError("compare must be given two entrants, or --baseline and none")
-    with load(file) as results:
+    with load(file) as results, _patience(by):
         if baseline is None:
             _print_duel(results, str(a), str(b), by.value, confidence, as_json=as_json)
             return
@@ -96,6 +97,14 @@ def compare(
             regressed = _print_changes(results, old, amount, relative, by.value, confidence, as_json)
     if regressed:
         raise typer.Exit(REGRESSED)
+
+
+def _patience(by: By | None) -> AbstractContextManager[Any]:
+    """Says on a terminal what takes so long."""
+    console = Console(stderr=True)
+    if by is not By.REGRET or not console.is_terminal:
+        return nullcontext()
+    return console.status("searching the fewest steps from each start of the test")
 
 
 def _amount(text: str) -> tuple[float, bool]:

@@ -9,7 +9,7 @@ from arena.adaptive import ADAPTIVE, decided, look_at
 from arena.comparison import without_nan
 from arena.places import rank_distribution, tie_groups, too_few
 from arena.results import Results
-from arena.scores import Bounds, Scores, scores_of
+from arena.scores import Scores, scores_of
 from arena.statistics import Estimate, bootstrap_interval, mean_estimate
 from envs.checks import number
 
@@ -79,9 +79,7 @@ class Leaderboard:
         return pd.DataFrame(rows)
 
 
-def leaderboard(
-    results: Results, by: str = "steps", confidence: float = 0.95, bounds: Bounds | None = None
-) -> Leaderboard:
+def leaderboard(results: Results, by: str = "steps", confidence: float = 0.95) -> Leaderboard:
     """The entrants of a tournament in the order of their scores.
 
     Args:
@@ -89,13 +87,12 @@ def leaderboard(
         by: a name in ``arena.scores.SCORES``.
         confidence: of the intervals and the places. Places of an adaptive tournament are tested at the
             level of its last look, whatever is asked.
-        bounds: see ``scores_of``; ``by="regret"`` needs them.
 
     Raises:
         ValueError: when there is no such score, or the confidence is not between 0 and 1.
     """
     check_confidence(confidence)
-    scores = scores_of(results, bounds)
+    scores = scores_of(results, by)
     costs = scores.costs(by)
     entrants, count = costs.shape
     places_at, remarks = _places_at(results.config, scores, confidence)

@@ -6,7 +6,7 @@ from typing import Any
 from arena.leaderboard import as_plain, check_confidence
 from arena.places import at_most, holm, paired_permutation_test, sign_flip_test, too_few
 from arena.results import Results
-from arena.scores import SCORES, Bounds, Floats, Scores, scores_of
+from arena.scores import SCORES, Floats, Scores, scores_of
 from arena.statistics import (
     Estimate,
     bootstrap_interval,
@@ -54,7 +54,6 @@ def compare_entrants(
     b: str,
     by: str = "steps",
     confidence: float = 0.95,
-    bounds: Bounds | None = None,
 ) -> Duel:
     """Compare two entrants, chosen before the results were seen: nothing is corrected for others.
 
@@ -62,7 +61,7 @@ def compare_entrants(
         ValueError: when there is no such entrant or score, or no replicate that all have run.
     """
     check_confidence(confidence)
-    scores = scores_of(results, bounds)
+    scores = scores_of(results, by)
     costs = scores.costs(by)
     for name in (a, b):
         choice("entrant", name, scores.entrants)
@@ -153,7 +152,7 @@ def regressions(
     for key in ("hill", "training", "evaluation"):
         if new.config.get(key) != old.config.get(key):
             raise ValueError(f"the files cannot be compared: their {key} differs")
-    after, before = scores_of(new), scores_of(old)
+    after, before = scores_of(new, by), scores_of(old, by)
     names = [name for name in after.entrants if name in before.entrants]
     if not names:
         raise ValueError("the files cannot be compared: they have no entrant in common")
@@ -179,6 +178,5 @@ def regressions(
 
 
 def _rows(scores: Scores, by: str, names: list[str], replicates: list[int]) -> Floats:
-    scores.costs(by)  # tells if there is no such score
     columns = [scores.replicates.index(replicate) for replicate in replicates]
     return scores.values[by][[scores.entrants.index(name) for name in names]][:, columns]

@@ -1,19 +1,17 @@
 """The scores that entrants are ranked by: one value a run, what is missing counted as the worst."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.regret import Bounds, fewest_steps
 from arena.results import Results
 from envs.checks import choice
 
 Floats = NDArray[np.float64]
-Bounds = Mapping[int, Floats]
-"""By replicate, the least steps that any drive needs from each start of the test."""
 
 
 class Score(NamedTuple):
@@ -32,6 +30,11 @@ SCORES: dict[str, Score] = {
     "iterations": Score("steps of training", 0),
 }
 QUANTILES = {"regret_median": 0.5, "regret_90": 0.9}
+
+
+def decimals(name: str) -> int:
+    """With how many a score, or a quantile of one, is printed."""
+    return SCORES[name.partition("_")[0]].decimals
 
 
 @dataclass(frozen=True)
@@ -60,9 +63,7 @@ class Scores:
         Raises:
             ValueError: when there is no such score.
         """
-        if by == "regret" and by not in self.values:
-            raise ValueError("regret must be given the fewest steps that are possible from each start")
-        choice("by", by, SCORES)
+        choice("by", by, [name for name in SCORES if name in self.values])
         return -self.values[by] if SCORES[by].more_is_better else self.values[by]
 
     def upto(self, replicates: int) -> "Scores":
@@ -72,17 +73,20 @@ class Scores:
         return Scores(self.entrants, tuple(self.replicates[i] for i in kept), values, self.failed[:, kept])
 
 
-def scores_of(results: Results, bounds: Bounds | None = None) -> Scores:
+def scores_of(results: Results, by: str = "steps", bounds: Bounds | None = None) -> Scores:
     """The scores of all entrants in the replicates that all of them have run.
 
     Args:
         results: of a tournament; it need not be finished.
-        bounds: with them there is ``regret``: its mean over the starts, ``regret_median`` and
-            ``regret_90``, its quantiles.
+        by: a name in ``SCORES``. Only for ``"regret"``, which takes some milliseconds a start of the
+            test, are there ``regret``, its mean over the starts, ``regret_median`` and ``regret_90``,
+            its quantiles.
+        bounds: for ``"regret"``, in place of what ``arena.regret.fewest_steps`` finds.
 
     Raises:
-        ValueError: when the bounds do not fit.
+        ValueError: when there is no such score, or the bounds do not fit.
     """
+    choice("by", by, SCORES)
     entrants = tuple(dict.fromkeys(entrant["name"] for entrant in results.config["entrants"]))
     runs: dict[int, dict[str, dict[str, Any]]] = {}
     for run in results.runs:
@@ -97,7 +101,8 @@ def scores_of(results: Results, bounds: Bounds | None = None) -> Scores:
         name: _matrix(table, [[_value(run, columns.get(name, name), most) for run in row] for row in table])
         for name, most in worst.items()
     }
-    if bounds is not None:
+    if by == "regret":
+        bounds = bounds or fewest_steps(results, replicates)
         regrets = [[_regrets(results, run, bounds) for run in row] for row in table]
         values["regret"] = _matrix(table, [[one.mean() for one in row] for row in regrets])
         for name, share in QUANTILES.items():

@@ -13,9 +13,20 @@ from arena.comparison import MINIMUM_ACCURACY, Comparison, compare
 from arena.leaderboard import Leaderboard, leaderboard
 from arena.readings import READINGS
 from arena.results import Results
-from arena.scores import SCORES
+from arena.scores import SCORES, decimals
 
-_HEADERS = {"steps": "steps", "accuracy": "accuracy %", "length": "length", "iterations": "iterations"}
+_HEADERS = {
+    "regret": "regret",
+    "regret_median": "median",
+    "regret_90": "90% below",
+    "steps": "steps",
+    "accuracy": "accuracy %",
+    "length": "length",
+    "iterations": "iterations",
+}
+_USUAL = ("steps", "accuracy", "length", "iterations")
+_BESIDE = {"regret": ("regret_median", "regret_90", "accuracy", "iterations")}
+_NAME = 20  # columns that a long name has at least, in a narrow terminal
 
 
 def render(results: Results, by: str | None = None, confidence: float = 0.95) -> RenderableType:
@@ -52,20 +63,21 @@ def _heading(results: Results, confidence: float) -> str:
 
 def _leaderboard(board: Leaderboard) -> Table:
     """One line an entrant; the score that decides comes first, with its interval."""
-    others = [name for name in _HEADERS if name != board.by]
+    others = [name for name in _BESIDE.get(board.by, _USUAL) if name != board.by]
     table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
     table.add_column("place", no_wrap=True)
-    table.add_column("entrant", overflow="fold")
+    widest = max(len(one.entrant) for one in board.standings)
+    table.add_column("entrant", overflow="fold", min_width=min(widest, _NAME))
     for name in (board.by, *others):
-        table.add_column(_HEADERS.get(name, name), justify="right", no_wrap=True)
+        table.add_column(_HEADERS[name], justify="right", no_wrap=True)
     for one in board.standings:
         place = str(one.place) if one.place == one.last_place else f"{one.place}-{one.last_place}"
         decisive = one.scores[board.by]
         table.add_row(
             place,
             Text(one.entrant),
-            _interval(decisive.value, decisive.high - decisive.value, SCORES[board.by].decimals),
-            *(_interval(one.scores[name].value, math.nan, SCORES[name].decimals) for name in others),
+            _interval(decisive.value, decisive.high - decisive.value, decimals(board.by)),
+            *(_interval(one.scores[name].value, math.nan, decimals(name)) for name in others),
         )
     return table
 

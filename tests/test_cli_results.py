@@ -113,7 +113,6 @@ def test_the_gate_opens_and_closes(capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "message"),
     [
         ("show old.sqlite --by speed", "Invalid value for '--by'"),
-        ("show old.sqlite --by regret", "regret must be given the fewest steps"),
         ("show old.sqlite --confidence 2", "confidence must be between 0 and 1, got 2.0"),
         ("show old.sqlite --confidence nan", "confidence must be a finite number"),
         ("show old.sqlite --csv --json", "--json and --csv must not be given together"),

@@ -3,6 +3,7 @@
 import io
 import json
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -10,13 +11,16 @@ import pytest
 from made_up_results import LIMIT, made_up
 from rich.console import Console
 
-from arena import Results
+from agents import MomentumAgent, RandomAgent
+from agents.optimal import Optimal, optimal_steps
+from arena import Entrant, Evaluation, Results, Tournament, Training, run
 from arena.curves import learning_curves
 from arena.leaderboard import leaderboard
 from arena.pairs import compare_entrants, regressions
 from arena.scores import SCORES, scores_of
 from arena.statistics import mean_estimate
 from arena.tables import render
+from envs import Hill
 
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0, 9.0, 8.0]
 
@@ -108,8 +112,6 @@ def test_the_score_that_decides_can_be_chosen() -> None:
         assert first == {"steps": "sure", "accuracy": "sure", "length": "sure"}
         with pytest.raises(ValueError, match=r"by must be one of .*; did you mean 'length'"):
             leaderboard(results, "lenght")
-        with pytest.raises(ValueError, match="regret must be given the fewest steps"):
-            leaderboard(results, "regret")
         with pytest.raises(ValueError, match="confidence must be between 0 and 1, got 1"):
             leaderboard(results, confidence=1.0)
 
@@ -117,15 +119,53 @@ def test_the_score_that_decides_can_be_chosen() -> None:
 def test_regret_is_what_is_beyond_a_bound_for_each_start() -> None:
     bounds = {0: np.array([80.0, 80.0, 90.0, 90.0]), 1: np.full(4, 100.0)}
     with made_up({"a": [100.0, 101.0], "b": [LIMIT, None]}) as results:
-        scores = scores_of(results, bounds)
-        board = leaderboard(results, "regret", bounds=bounds)
+        scores = scores_of(results, "regret", bounds)
         with pytest.raises(ValueError, match="bounds of replicate 0 must have 4 values, got 3"):
-            scores_of(results, {0: np.zeros(3)})
+            scores_of(results, "regret", {0: np.zeros(3)})
+        with pytest.raises(ValueError, match="by must be one of accuracy, iterations, length, steps, got"):
+            scores_of(results, "steps").costs("regret")
     assert scores.values["regret"].tolist() == [[15.0, 1.0], [415.0, 400.0]]
     assert scores.values["regret_median"].tolist() == [[15.0, 1.0], [415.0, 400.0]]
     assert scores.values["regret_90"][0, 0] == pytest.approx(np.quantile([19.0, 20.0, 10.0, 11.0], 0.9))
-    assert board.standings[0].entrant == "a"
-    assert set(board.standings[0].scores) == {*SCORES, "regret_median", "regret_90"}
+    assert set(scores.values) == {*SCORES, "regret_median", "regret_90"}
+
+
+def test_nobody_beats_the_bounds_that_are_computed_and_the_optimum_attains_them() -> None:
+    entrants = (Entrant("optimal", Optimal), Entrant("momentum", MomentumAgent), Entrant("lost", RandomAgent))
+    tournament = Tournament(
+        entrants,
+        training=Training(episodes=1, max_steps=1),
+        evaluation=Evaluation(episodes=20, max_steps=300),
+        replicates=2,
+    )
+    with run(tournament, n_jobs=1) as results:
+        scores = scores_of(results, "regret")
+        board = leaderboard(results, "regret")
+        tables = printed(results, "regret")
+        by_hand = [
+            results.arrays("momentum", r)["test_lengths"]
+            - optimal_steps(tournament.hill, tournament.conditions.start_states(r)[:, 0])[0]
+            for r in (0, 1)
+        ]
+    assert scores.values["regret"][0].tolist() == [0.0, 0.0]
+    assert scores.values["regret"][1].tolist() == [one.mean() for one in by_hand]
+    assert min(map(np.min, by_hand)) > 0
+    assert (scores.values["regret"][2] > 190.0).all()  # the limit less some hundred steps
+    assert [one.entrant for one in board.standings] == ["optimal", "momentum", "lost"]
+    assert re.search(r"^ 1-3 +momentum +\d+\.\d ± ", tables, re.MULTILINE)  # names fit beside the columns
+    assert "By the mean steps of a test drive beyond the fewest possible from its start." in tables
+
+
+def test_where_the_goal_cannot_be_reached_there_is_nothing_to_regret() -> None:
+    tournament = Tournament(
+        (Entrant("momentum", MomentumAgent),),
+        hill=Hill(thrust=1e-5),
+        training=Training(episodes=1, max_steps=1),
+        evaluation=Evaluation(episodes=3, max_steps=100),
+        replicates=1,
+    )
+    with run(tournament, n_jobs=1) as results:
+        assert scores_of(results, "regret").values["regret"].tolist() == [[0.0]]
 
 
 def test_it_is_told_when_nothing_can_be_shown() -> None:

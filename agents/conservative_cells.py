@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from agents.policies import Counts
 from agents.switches import FAR
-from envs import Hill, Integrator
+from envs import Dynamics, Hill, Integrator
 from envs.compilation import compile_loop
 
 BINS = (800, 800)
@@ -129,6 +129,9 @@ def image(hill: Hill, low: tuple[float, float], high: tuple[float, float], actio
     vary = pull * hill.omega * half  # |cos(a) - cos(b)| <= |a - b|
     keep = 1.0 - h * hill.friction / hill.mass
     ends = (keep * low[1], keep * high[1])
+    if hill.dynamics == Dynamics.CONSTRAINED:
+        push, vary = constrained_push(hill, low, high, action)
+        ends = (low[1], high[1])
     slowest = min(max(min(ends) + push - vary, hill.min_velocity), hill.max_velocity)
     fastest = min(max(max(ends) + push + vary, hill.min_velocity), hill.max_velocity)
     moving = (slowest, fastest)
@@ -138,3 +141,28 @@ def image(hill: Hill, low: tuple[float, float], high: tuple[float, float], actio
     if hill.inelastic_wall and left <= hill.min_position:
         fastest = max(fastest, 0.0)
     return left, right, slowest, fastest
+
+
+def constrained_push(
+    hill: Hill, low: tuple[float, float], high: tuple[float, float], action: int
+) -> tuple[float, float]:
+    """What the constrained dynamics add to the velocity in a step, from states between ``low`` and ``high``.
+
+    The acceleration is N / D, where N = F/m - k_f v/m - g f' - f' f'' v^2 and D = 1 + f'^2. Its derivatives
+    are bounded because ``|f'| <= omega``, ``|f''| <= omega^2``, the third derivative of f is -omega^2 f', and
+    ``|f'| / D <= 1/2``.
+
+    Returns:
+        that from the middle, and by how much that from any other state differs from it, at most.
+    """
+    x, v = 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])
+    fastest, square = max(abs(low[1]), abs(high[1])), hill.omega * hill.omega
+    slope, bend = hill.slope(x), -square * hill.height(x)
+    drag, thrust = hill.friction / hill.mass, (action - 1) * (hill.thrust / hill.mass)
+    middle = (thrust - drag * v - hill.gravity * slope - slope * bend * v * v) / (1.0 + slope * slope)
+    centrifugal = square * fastest * fastest
+    greatest = abs(thrust) + drag * fastest + 0.5 * (hill.gravity + centrifugal)  # of N / D
+    by_position = square * (hill.gravity + centrifugal + fastest * fastest + greatest)  # |D'| / D <= omega^2
+    by_velocity = drag + square * fastest
+    half_x, half_v = 0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1])
+    return hill.time_step * middle, hill.time_step * (by_position * half_x + by_velocity * half_v)

@@ -20,7 +20,7 @@ from agents.lower_bound import affordable, lower_bound
 from agents.parameters import Count, validated
 from agents.references import DoesNotLearn, MomentumAgent
 from agents.switches import FAR, MOST, Relaxed, spacing
-from envs import Hill
+from envs import Dynamics, Hill
 from envs.checks import instance, number
 from envs.compilation import compile_loop
 
@@ -152,8 +152,8 @@ class Optimal(DoesNotLearn, _Table):
             bins: cells along position and along velocity.
 
         Raises:
-            TypeError, ValueError: when ``task`` is no hill or has too much friction; when a parameter breaks
-                its rule.
+            TypeError, ValueError: when ``task`` is no hill, has too much friction or other dynamics than
+                the simplified; when a parameter breaks its rule.
         """
         return cls(*_table(instance("task", task, Hill), bins))
 
@@ -164,6 +164,8 @@ class Optimal(DoesNotLearn, _Table):
 
 @lru_cache(maxsize=8)
 def _table(hill: Hill, bins: int) -> tuple[Grid, NDArray[np.int8]]:
+    if hill.dynamics != Dynamics.SIMPLIFIED:
+        raise ValueError(f"dynamics must be simplified for this agent, got {hill.dynamics.label!r}")
     if not Relaxed.of(hill).applies:
         raise ValueError(
             f"friction must be less, for so long a time step and so steep a hill, got {hill.friction}"

@@ -36,7 +36,7 @@ Peterson, Difference Equations, 2nd ed. 2001, chapter 6 (Sturm comparison).
 import math
 from typing import NamedTuple, Self
 
-from envs import Hill, Integrator
+from envs import Dynamics, Hill, Integrator
 
 FAR = 1_000_000
 """A number of steps that stands for infinity."""
@@ -64,6 +64,7 @@ class Relaxed(NamedTuple):
         omega: of the hill.
         time_step: h.
         explicit: whether the old velocity moves the position.
+        simplified: whether the hill's dynamics are those of the relaxed car, but for its clips.
         reach: the greatest distance of a position from 0.
         slack: more than the error of a step by rounding, as a velocity, where ``|x| <= reach``.
     """
@@ -75,6 +76,7 @@ class Relaxed(NamedTuple):
     omega: float
     time_step: float
     explicit: bool
+    simplified: bool
     reach: float
     slack: float
 
@@ -95,14 +97,15 @@ class Relaxed(NamedTuple):
             hill.omega,
             h,
             hill.integrator == Integrator.EXPLICIT,
+            hill.dynamics == Dynamics.SIMPLIFIED,
             reach,
             slack,
         )
 
     @property
     def applies(self) -> bool:
-        """Whether the condition of the theory holds, with something to spare."""
-        return self.keep - (self.stiffness if self.explicit else 0.0) > _DOUBT
+        """Whether the conditions of the theory hold, with something to spare."""
+        return self.simplified and self.keep - (self.stiffness if self.explicit else 0.0) > _DOUBT
 
     def growth(self, scale: float, slope: float) -> float:
         """How much longer a step makes a small difference (x, v) of two drives with the same thrust, at most.

@@ -1,5 +1,5 @@
 """The hill and the environments over it: physics, PettingZoo, random streams, compilation."""
 
-from envs.hill import Hill, Integrator
+from envs.hill import Dynamics, Hill, Integrator
 
-__all__ = ["Hill", "Integrator"]
+__all__ = ["Dynamics", "Hill", "Integrator"]

@@ -7,8 +7,9 @@ import gymnasium
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 
-from envs import Hill, Integrator
+from envs import Dynamics, Hill, Integrator
 from envs.compilation import compile_loop
 
 Floats = NDArray[np.float64]
@@ -18,6 +19,7 @@ HILLS = {
     "friction": Hill(friction=50.0),
     "explicit": Hill(integrator="explicit"),
     "elastic": Hill(inelastic_wall=False),
+    "constrained": Hill(dynamics="constrained", friction=50.0),
     "other": Hill(omega=2.5, mass=700.0, gravity=0.001, time_step=0.3, thrust=1.3),
 }
 
@@ -110,6 +112,15 @@ STEPS: list[tuple[Hill, tuple[float, float], int, tuple[float, float]]] = [
     (Hill(gravity=0.0), (0.0, -0.0695), 0, (-0.07, -0.07)),
     (Hill(gravity=0.0, integrator="explicit"), (0.0, 0.0695), 2, (0.0695, 0.07)),
     (Hill(gravity=0.0), (0.59, 0.05), 1, (0.6, 0.05)),
+    # Constrained at 0: f' = 3, f'' = 0, so a tenth of the simplified acceleration.
+    (Hill(dynamics="constrained"), (0.0, 0.0), 1, (-0.00025, -0.00025)),
+    # Constrained at pi / 12: f'^2 = 9/2, f' f'' = -27/2, so 27/11 v^2 without forces.
+    (
+        Hill(dynamics="constrained", gravity=0.0),
+        (math.pi / 12, 0.02),
+        1,
+        (math.pi / 12 + 0.02 + 0.0108 / 11, 0.02 + 0.0108 / 11),
+    ),
 ]
 
 
@@ -147,6 +158,33 @@ def test_friction_and_nothing_else_takes_the_energy_of_a_coasting_car() -> None:
     assert left(Hill(friction=10.0)) < 0.001
 
 
+def test_constrained_dynamics_are_those_of_a_bead_on_the_curve() -> None:
+    start, end = (-0.9, 0.0), 200.0  # three swings
+
+    def bead(_: float, state: Floats) -> Floats:
+        """Newton's law with the force of the curve as an unknown, per unit of mass."""
+        x, v = state
+        slope, bend = 3.0 * math.cos(3.0 * x), -9.0 * math.sin(3.0 * x)
+        # Unknown: x'', y'' and the force N of the curve, along (-slope, 1).
+        matrix = [[1.0, 0.0, slope], [0.0, 1.0, -1.0], [-slope, 1.0, 0.0]]
+        return np.array([v, np.linalg.solve(matrix, [0.0, -Hill().gravity, bend * v * v])[0]])
+
+    def energy(x: Any, v: Any) -> Any:
+        return v**2 * (1.0 + (3.0 * np.cos(3.0 * x)) ** 2) / 2.0 + Hill().gravity * (np.sin(3.0 * x) + 1.0)
+
+    def coast(time_step: float) -> tuple[float, float]:
+        hill, state = Hill(dynamics="constrained", time_step=time_step), start
+        for _ in range(round(end / time_step)):
+            state, _, _ = hill.step(state, 1)
+        return state
+
+    exact = solve_ivp(bead, (0.0, end), start, method="DOP853", rtol=1e-11, atol=1e-13).y
+    assert np.ptp(energy(*exact)) < 1e-8 * energy(*start)
+    coarse, fine = (math.dist(coast(time_step), exact[:, -1]) for time_step in (0.02, 0.01))
+    assert fine < 5e-3
+    assert coarse / fine == pytest.approx(2.0, abs=0.1)  # Euler's method is of first order
+
+
 @pytest.mark.parametrize("omega", [0.7, 3.0])
 @pytest.mark.parametrize("position", [-1.2, -math.pi / 6, 0.0, 0.31])
 def test_slope_is_the_derivative_of_the_height(omega: float, position: float) -> None:
@@ -164,7 +202,7 @@ def test_random_walks_are_as_long_as_in_the_paper() -> None:
 
 POSITIVE = [(name, bad) for name in ("omega", "mass", "time_step") for bad in (0.0, -1.0)]
 NOT_NEGATIVE = [(name, -0.1) for name in ("gravity", "friction", "thrust")]
-NUMBERS = [name for name in Hill._fields if name not in {"inelastic_wall", "integrator"}]
+NUMBERS = [name for name in Hill._fields if name not in {"inelastic_wall", "integrator", "dynamics"}]
 OUT_OF_ORDER = [
     ("max_position", -1.2),
     ("goal_position", -1.2),
@@ -178,7 +216,7 @@ OUT_OF_ORDER = [
 ]
 NOT_FINITE = [(name, bad) for name in NUMBERS for bad in (math.nan, math.inf, -math.inf)]
 NO_NUMBERS = [(name, bad) for name in NUMBERS for bad in ("1", None, True, 1j)]
-NO_CHOICE = [("integrator", "euler"), ("integrator", 2), ("integrator", None)]
+NO_CHOICE = [(name, bad) for name in ("integrator", "dynamics") for bad in ("euler", 2, None)]
 NO_TRUTH = [("inelastic_wall", 1), ("inelastic_wall", "yes"), ("inelastic_wall", None)]
 
 
@@ -195,10 +233,12 @@ def test_bad_constant_is_refused_by_name_and_value(
         build(**{name: bad})
 
 
-@pytest.mark.parametrize("integrator", Integrator)
-def test_integrator_may_be_given_by_its_name(integrator: Integrator) -> None:
-    assert Hill(integrator=integrator.label).integrator is integrator
-    assert Hill(integrator=integrator) == Hill(integrator=integrator.label)
+@pytest.mark.parametrize("chosen", [*Integrator, *Dynamics])
+def test_choices_may_be_given_by_their_names(chosen: Integrator | Dynamics) -> None:
+    field = type(chosen).__name__.lower()
+    named: dict[str, Any] = {field: chosen.label}
+    assert getattr(Hill(**named), field) is chosen
+    assert Hill(**named) == Hill()._replace(**{field: chosen})
 
 
 def test_misspelt_integrator_is_told_the_nearest() -> None:

@@ -45,6 +45,7 @@ def hills(draw: st.DrawFn) -> Hill:
         max_start=-0.4,
         inelastic_wall=draw(st.booleans()),
         integrator=draw(st.sampled_from(["semi-implicit", "explicit"])),
+        dynamics=draw(st.sampled_from(["simplified", "simplified", "constrained"])),
     )
 
 
@@ -421,6 +422,8 @@ def test_optimal_driver_reaches_the_goal_on_a_hill_with_the_explicit_integrator(
 def test_optimal_driver_refuses_what_it_cannot_plan_for() -> None:
     with pytest.raises(ValueError, match=r"^friction must be less"):
         Optimal.create(Hill(friction=2000.0))
+    with pytest.raises(ValueError, match=r"^dynamics must be simplified for this agent, got 'constrained'$"):
+        Optimal.create(Hill(dynamics="constrained"))
     with pytest.raises(TypeError, match=r"^task must be a Hill"):
         Optimal.create("hill")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"^bins must"):

@@ -2,12 +2,12 @@
 
 import inspect
 import typing
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal
 
-from annotated_types import BaseMetadata, Ge, GroupedMetadata, Gt, Le, Lt
-
+from agents import bounds as limits
+from agents.hints import type_hints
 from envs.checks import choice, integer, number
 
 
@@ -23,37 +23,38 @@ def settle(name: str, value: Any, annotation: Any) -> Any:
     Raises:
         TypeError, ValueError: when it breaks the annotation's rule.
     """
-    base, bounds = _split(annotation)
+    base, bounds = limits.split(annotation)
     origin, arguments = _parts(base, bounds)
-    _check_bounds(name, base, bounds)
+    limits.check(name, arguments if origin in _UNIONS else (base,), bounds)
     if origin in _UNIONS:
         return _settle_union(name, value, arguments)
     if origin is Literal:
         return _settle_literal(name, value, arguments)
+    if _is_named_tuple(origin or base):
+        return _settle_named_tuple(name, value, origin or base)
     if _is_sequence(origin):
         return _settle_sequence(name, value, arguments, fixed=origin is tuple)
     if base in _PLAIN:
-        return _within(name, _PLAIN[base](name, value), bounds)
-    if isinstance(base, type) and base is not Any:
-        return _settle_instance(name, value, base)
-    return as_tuples(value)
+        return limits.within(name, _PLAIN[base](name, value), bounds)
+    return _settle_instance(name, value, base)
 
 
 def rule(annotation: Any) -> str:
     """Type and bounds in words, such as ``float in [0, 1]``."""
-    base, bounds = _split(annotation)
+    base, bounds = limits.split(annotation)
     origin, arguments = _parts(base, bounds)
     if origin in _UNIONS:
         return " or ".join(map(rule, arguments))
     if origin is Literal:
         return " or ".join(map(repr, arguments))
-    if _is_sequence(origin):
-        return f"list of {rule(arguments[0])}" if arguments else "list"
+    if _is_sequence(origin) and not _is_named_tuple(origin):
+        kinds = dict.fromkeys(rule(one) for one in arguments if one is not Ellipsis)
+        return f"list of {', '.join(kinds)}" if kinds else "list"
     if base in (Any, None, NoneType):
         return "anything" if base is Any else "nothing"
     name = getattr(base, "__name__", str(base))
-    known = [bound for bound in bounds if isinstance(bound, _BOUNDS) and base in _NUMBERS]
-    return f"{name} {_range(known)}" if known else name
+    known = [bound for bound in bounds if isinstance(bound, limits.BOUNDS) and base in limits.NUMBERS]
+    return f"{name} {limits.in_words(known)}" if known else name
 
 
 def as_tuples(value: Any) -> Any:
@@ -73,8 +74,6 @@ def _nothing(name: str, value: Any) -> None:
 
 
 _UNIONS = (typing.Union, UnionType)
-_BOUNDS = (Ge, Gt, Le, Lt)
-_NUMBERS = (int, float)
 _PLAIN: dict[Any, Callable[[str, Any], Any]] = {
     int: integer,
     float: number,
@@ -82,6 +81,10 @@ _PLAIN: dict[Any, Callable[[str, Any], Any]] = {
     None: _nothing,
     NoneType: _nothing,
 }
+
+
+def _is_named_tuple(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, tuple) and hasattr(kind, "_fields")
 
 
 def _is_sequence(origin: Any) -> bool:
@@ -98,11 +101,15 @@ def _settle_literal(name: str, value: Any, options: tuple[Any, ...]) -> Any:
 
 
 def _settle_union(name: str, value: Any, members: tuple[Any, ...]) -> Any:
-    if isinstance(value, Mapping):  # a table of a file: the part that has all of its fields
-        kinds = [kind for kind in members if hasattr(kind, "_fields")]
-        fitting = [kind for kind in kinds if set(value) <= set(kind._fields)]
-        if kinds:
-            return _settle_instance(name, value, (fitting or kinds)[0])
+    bases = [limits.split(member)[0] for member in members]
+    kinds = [kind for kind in (typing.get_origin(base) or base for base in bases) if _is_named_tuple(kind)]
+    if kinds and isinstance(value, Mapping):  # a table of a file: the kind that it has most fields of
+        _check_fields(name, value, {field for kind in kinds for field in kind._fields})
+        kinds.sort(key=lambda kind: -len(value.keys() & {*kind._fields}))
+        return _settle_named_tuple(name, value, kinds[0])
+    for kind in kinds:
+        if isinstance(value, kind):
+            return _settle_named_tuple(name, value, kind)
     problems: list[Exception] = []
     for member in members:
         try:
@@ -129,46 +136,49 @@ def _settle_sequence(
 
 
 def _settle_instance(name: str, value: Any, kind: Any) -> Any:
-    if isinstance(value, Mapping) and hasattr(kind, "_fields"):
-        for key in value:
-            choice(f"field of {name}", key, kind._fields)
+    try:
+        fits = kind is Any or not isinstance(kind, type) or isinstance(value, kind)
+    except TypeError:  # a protocol or a typed dictionary cannot be looked for
+        fits = True
+    if not fits:
+        raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
+    return as_tuples(value)
+
+
+def _settle_named_tuple(name: str, value: Any, kind: Any) -> Any:
+    """``value``, a table or a ``kind``, with fields as they are annotated; defaults are left alone."""
+    if isinstance(value, Mapping):
+        _check_fields(name, value, kind._fields)
         for field in inspect.signature(kind).parameters.values():
             if field.default is field.empty and field.name not in value:
                 raise TypeError(f"{name} must have the field {field.name}, got {value!r}")
-        return kind(**value)
-    if not isinstance(value, kind):
-        raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
-    return value
+        return _construct(name, kind, _settle_fields(name, value, kind))
+    _settle_instance(name, value, kind)
+    defaults = value._field_defaults
+    given = {key: p for key, p in value._asdict().items() if key not in defaults or defaults[key] is not p}
+    settled = _settle_fields(name, given, type(value))
+    if all(settled[key] is part for key, part in given.items()):
+        return value
+    return _construct(name, value._replace, settled)
 
 
-def _within(name: str, value: Any, bounds: list[Any]) -> Any:
-    for bound in bounds:
-        if (
-            (isinstance(bound, Ge) and not value >= bound.ge)
-            or (isinstance(bound, Gt) and not value > bound.gt)
-            or (isinstance(bound, Le) and not value <= bound.le)
-            or (isinstance(bound, Lt) and not value < bound.lt)
-        ):
-            raise ValueError(f"{name} must be {_range(bounds)}, got {value!r}")
-    return value
+def _check_fields(name: str, value: Mapping[str, Any], fields: Collection[str]) -> None:
+    for key in value:
+        choice(f"field of {name}", key, fields)
 
 
-def _split(annotation: Any) -> tuple[Any, list[Any]]:
-    """The type of an annotation, and its bounds."""
-    if typing.get_origin(annotation) is not Annotated:
-        return annotation, []
-    base, *metadata = typing.get_args(annotation)
-    return base, [one for one in _flat(metadata) if isinstance(one, BaseMetadata)]  # the rest is notes
+def _settle_fields(name: str, value: Mapping[str, Any], kind: Any) -> dict[str, Any]:
+    rules = type_hints(kind)
+    return {key: settle(f"{name}.{key}", part, rules.get(key, Any)) for key, part in value.items()}
 
 
-def _check_bounds(name: str, base: Any, bounds: list[Any]) -> None:
-    """A bound that is not looked at would be worse than none."""
-    members = typing.get_args(base) if typing.get_origin(base) in _UNIONS else (base,)
-    numeric = any(_split(one)[0] in _NUMBERS for one in members)
-    for bound in bounds:
-        if not isinstance(bound, _BOUNDS) or not numeric:
-            known = ", ".join(one.__name__ for one in _BOUNDS)
-            raise TypeError(f"{name} must be a number with bounds {known} or Interval, got {bound!r}")
+def _construct(name: str, make: Callable[..., Any], fields: Mapping[str, Any]) -> Any:
+    """``make(**fields)``; the rules that it has of its own are told with the whole name of the field."""
+    try:
+        return make(**fields)
+    except (TypeError, ValueError) as problem:
+        told = f"{name}.{problem}" if str(problem).partition(" ")[0] in fields else f"{name}: {problem}"
+        raise (TypeError if isinstance(problem, TypeError) else ValueError)(told) from problem
 
 
 def _parts(base: Any, bounds: list[Any]) -> tuple[Any, tuple[Any, ...]]:
@@ -177,26 +187,7 @@ def _parts(base: Any, bounds: list[Any]) -> tuple[Any, tuple[Any, ...]]:
     if base in (tuple, list, Sequence):
         return base, ()
     if origin in _UNIONS and bounds:
-        arguments = tuple(Annotated[one, *bounds] if _split(one)[0] in _NUMBERS else one for one in arguments)
+        arguments = tuple(
+            Annotated[one, *bounds] if limits.split(one)[0] in limits.NUMBERS else one for one in arguments
+        )
     return origin, arguments
-
-
-def _flat(metadata: Sequence[Any]) -> Iterator[Any]:
-    for one in metadata:
-        yield from one if isinstance(one, GroupedMetadata) else [one]
-
-
-def _range(bounds: list[Any]) -> str:
-    least = [(b.ge, False) if isinstance(b, Ge) else (b.gt, True) for b in bounds if isinstance(b, (Ge, Gt))]
-    most = [(b.le, True) if isinstance(b, Le) else (b.lt, False) for b in bounds if isinstance(b, (Le, Lt))]
-    (low, above), (high, included) = max(least, default=(None, False)), min(most, default=(None, False))
-    if low is not None and high is not None:
-        return f"in {'(' if above else '['}{_short(low)}, {_short(high)}{']' if included else ')'}"
-    if low is not None:
-        return f"{'greater than' if above else 'at least'} {_short(low)}"
-    return f"{'at most' if included else 'less than'} {_short(high)}"
-
-
-def _short(bound: Any) -> str:
-    """``1`` for 1.0, and all of the digits of the others."""
-    return f"{bound:g}" if float(f"{bound:g}") == bound else repr(bound)

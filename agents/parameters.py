@@ -14,6 +14,7 @@ from typing import Annotated, Any, TypeVar
 from annotated_types import Ge, Gt, Interval
 
 from agents.annotations import as_tuples, rule, settle
+from agents.hints import type_hints
 from envs.checks import choice
 
 Create = TypeVar("Create", bound=Callable[..., Any])
@@ -116,8 +117,4 @@ def validated(create: Create) -> Create:
 
 def _hints(maker: Any) -> dict[str, Any]:
     constructor = vars(maker).get("__init__", maker) if isinstance(maker, type) else maker
-    function = inspect.unwrap(getattr(constructor, "__func__", constructor))
-    try:
-        return typing.get_type_hints(function, include_extras=True)
-    except Exception:  # names that exist for type checkers only
-        return {}
+    return type_hints(inspect.unwrap(getattr(constructor, "__func__", constructor)))

@@ -1,9 +1,24 @@
 """Annotations as rules: what is accepted satisfies them, what is not is told in one sentence."""
 
+import math
 import re
+import tomllib
 import typing
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
+from collections.abc import Callable, Mapping
+from typing import (
+    Annotated,
+    Any,
+    Generic,
+    Literal,
+    NamedTuple,
+    NewType,
+    Protocol,
+    Self,
+    TypedDict,
+    TypeVar,
+    get_args,
+    get_origin,
+)
 
 import numpy as np
 import pytest
@@ -11,7 +26,11 @@ from annotated_types import Ge, Gt, Interval, Le, Lt, MultipleOf
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from agents import HarmonicRate, LinearDecay, QLearning, Softmax, UpperConfidence
 from agents.annotations import rule, settle
+from agents.parameters import parameters_of
+from arena import Entrant
+from envs.checks import Validated, number
 
 
 class Part(NamedTuple):
@@ -19,6 +38,45 @@ class Part(NamedTuple):
 
     gain: Any
     offset: Any = 0.0
+
+
+class Spring(NamedTuple):
+    """Its fields have types, bounds and defaults."""
+
+    stiffness: Annotated[float, Gt(0)]
+    rest: float = -0.5
+    turns: Annotated[int, Interval(ge=1, le=9)] | None = None
+    reach: float = math.inf
+
+
+class Bounded(Validated, Spring):  # type: ignore[misc]  # both have _make
+    """A part with a rule of its own."""
+
+    __slots__ = ()
+
+    def __new__(cls, stiffness: float = 1.0, rest: float = 0.0) -> Self:
+        number("rest", rest, -1, stiffness)
+        return super().__new__(cls, stiffness, rest)
+
+
+T = TypeVar("T")
+
+
+class Pair(NamedTuple, Generic[T]):
+    """A generic part."""
+
+    one: T
+    other: int = 0
+
+
+class Quiet(Protocol):
+    """Cannot be looked for at run time."""
+
+
+class Table(TypedDict):
+    """Cannot be looked for either."""
+
+    gain: float
 
 
 @st.composite
@@ -106,7 +164,7 @@ def test_what_is_accepted_satisfies_the_annotation_and_what_is_not_is_one_senten
         settled = settle("gear", value, annotation)
     except (TypeError, ValueError) as problem:
         told = str(problem)
-        assert re.match(r"(field of )?gear must ", told), told
+        assert re.match(r"(field of )?gear(\.\w+)* must ", told), told
         assert "got " in told
         assert not satisfies(value, annotation)
     else:
@@ -119,7 +177,8 @@ def test_a_table_becomes_the_named_tuple_with_all_its_fields(value: Any) -> None
     for annotation in (Part, Part | None, float | Part):
         if isinstance(value, Mapping):
             if {"gain"} <= value.keys() <= {"gain", "offset"}:
-                assert settle("gear", value, annotation) == Part(**value)
+                parts = {key: settle("gear", part, Any) for key, part in value.items()}  # lists as tuples
+                assert settle("gear", value, annotation) == Part(**parts)
             else:
                 with pytest.raises(
                     (TypeError, ValueError), match=r"gear must (have the field|be one of) gain"
@@ -140,3 +199,93 @@ def test_notes_in_an_annotation_are_no_bounds() -> None:
     assert settle("gear", 3, Annotated[int, "how fast", Ge(1)]) == 3
     assert rule(Annotated[int, "how fast", Ge(1)]) == "int at least 1"
     assert rule(Annotated[str, "how fast"]) == "str"
+
+
+EITHER = Softmax | UpperConfidence | None
+SPRING = {
+    "stiffness = 0": (Spring, "gear.stiffness must be greater than 0, got 0.0"),
+    "stiffness = 'x'": (Spring, "gear.stiffness must be a number, got 'x'"),
+    "stiffness = 1; rest = inf": (Spring, "gear.rest must be a finite number, got inf"),
+    "stiffness = 1; turns = 0.5": (Spring, "gear.turns must be int in [1, 9] or nothing, got 0.5"),
+    "stiffness = 1; turns = 10": (Spring | None, "gear.turns must be in [1, 9], got 10"),
+    "stiffness = 1; rest = 2": (Bounded, "gear.rest must be in [-1, 1], got 2.0"),
+    "start = 2": (LinearDecay | float, "gear.start must be in [0, 1], got 2.0"),
+    "end = 'x'": (LinearDecay, "gear.end must be a number, got 'x'"),
+    "until = 0": (LinearDecay, "gear.until must be in (0, 1], got 0.0"),
+    "A = 2; B = 1": (HarmonicRate, "gear.B must be a finite number of at least 2, got 1.0"),
+    "end = 0": (EITHER, "gear.end must be a finite number greater than 0, got 0.0"),
+    "c = -1": (EITHER, "gear.c must be a finite number of at least 0, got -1.0"),
+    "rst = 1": (
+        Spring,
+        "field of gear must be one of reach, rest, stiffness, turns, got 'rst'; did you mean 'rest'?",
+    ),
+    "cc = 1": (EITHER, "field of gear must be one of c, end, start, got 'cc'; did you mean 'c'?"),
+    "strat = 1": (
+        LinearDecay | float,
+        "field of gear must be one of end, start, until, got 'strat'; did you mean 'start'?",
+    ),
+}
+
+
+@pytest.mark.parametrize("fields", SPRING)
+def test_a_wrong_field_of_a_table_is_one_sentence_with_its_whole_name(fields: str) -> None:
+    kind, message = SPRING[fields]
+    table = tomllib.loads(fields.replace("; ", "\n"))
+    with pytest.raises((TypeError, ValueError), match=f"^{re.escape(message)}$"):
+        settle("gear", table, kind)
+
+
+def test_the_fields_of_a_named_tuple_given_in_python_are_looked_at() -> None:
+    wrong: Any = Spring("x")  # type: ignore[arg-type]  # that is the point
+    for kind in (Spring, Spring | None, float | Spring):
+        with pytest.raises(TypeError, match=r"^gear\.stiffness must be a number, got 'x'$"):
+            settle("gear", wrong, kind)
+    with pytest.raises(ValueError, match=r"^gear\.turns must be in \[1, 9\], got 0$"):
+        settle("gear", Spring(1.0, turns=0), Spring)
+    turns: Any = np.int64(3)
+    settled = settle("gear", Spring(np.float64(2), turns=turns), Spring | None)
+    assert settled == Spring(2.0, turns=3)  # and the reach, at its default, may be what it is
+    assert [type(part) for part in settled] == [float, float, int, float]
+    with pytest.raises(ValueError, match=r"^entrant 'q': epsilon\.start must be in \[0, 1\], got 7\.0$"):
+        Entrant("q", QLearning, epsilon={"start": 7})
+
+
+def test_what_is_right_is_left_as_it_is() -> None:
+    for value in (Spring(2.0), LinearDecay(0.5, 0.1), HarmonicRate(), Softmax(), UpperConfidence()):
+        assert settle("gear", value, type(value)) is value
+
+
+def test_a_generic_named_tuple_is_one() -> None:
+    assert settle("gear", {"one": 1.5, "other": 2}, Pair[float]) == Pair(1.5, 2)
+    assert isinstance(settle("gear", Pair(1.5, 2), Pair[float] | None), Pair)
+    assert rule(Pair[float]) == "Pair"
+    with pytest.raises(TypeError, match=r"^gear\.other must be an integer, got 'x'$"):
+        settle("gear", {"one": 1.5, "other": "x"}, Pair[float])
+
+
+def test_types_that_cannot_be_looked_for_take_anything() -> None:
+    for kind in (Quiet, Table, dict[str, int], Callable[[int], int]):
+        assert settle("gear", {"gain": 1}, kind) == {"gain": 1}
+
+
+def test_a_new_type_has_the_bounds_of_what_it_is_made_of() -> None:
+    speed = NewType("speed", Annotated[float, Ge(0)])
+    with pytest.raises(ValueError, match=r"^gear must be at least 0, got -1\.0$"):
+        settle("gear", -1, speed)
+    with pytest.raises(ValueError, match=r"^gear must be in \[0, 3\], got 4\.0$"):
+        settle("gear", 4, Annotated[speed, Le(3)])
+
+
+def test_a_name_for_type_checkers_only_takes_no_bounds_away() -> None:
+    class Agent:
+        @classmethod
+        def create(cls, task: "Unknown", *, gain: "Annotated[float, Ge(0)]" = 1.0) -> None:  # type: ignore[name-defined]  # noqa: F821
+            pass
+
+    declared, _ = parameters_of(Agent)
+    assert declared["gain"].rule() == "float at least 0"
+
+
+def test_a_list_of_several_kinds_names_them_all() -> None:
+    assert rule(tuple[int, int]) == rule(tuple[int, ...]) == "list of int"
+    assert rule(tuple[int, str]) == "list of int, str"

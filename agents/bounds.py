@@ -1,0 +1,72 @@
+"""Bounds of numbers in annotations, with the vocabulary of the package annotated-types."""
+
+import typing
+from collections.abc import Iterator, Sequence
+from typing import Annotated, Any
+
+from annotated_types import BaseMetadata, Ge, GroupedMetadata, Gt, Le, Lt
+
+BOUNDS = (Ge, Gt, Le, Lt)
+NUMBERS = (int, float)
+
+
+def split(annotation: Any) -> tuple[Any, list[Any]]:
+    """The type of an annotation, and its bounds."""
+    annotation = getattr(annotation, "__supertype__", annotation)  # of a NewType
+    if typing.get_origin(annotation) is not Annotated:
+        return annotation, []
+    inner, *metadata = typing.get_args(annotation)
+    base, bounds = split(inner)
+    return base, bounds + [one for one in _flat(metadata) if isinstance(one, BaseMetadata)]  # no notes
+
+
+def check(name: str, members: Sequence[Any], bounds: list[Any]) -> None:
+    """A bound that is not looked at would be worse than none.
+
+    Raises:
+        TypeError: when none of the types ``members`` is a number's, or a bound is of no known kind.
+    """
+    numeric = any(split(one)[0] in NUMBERS for one in members)
+    for bound in bounds:
+        if not isinstance(bound, BOUNDS) or not numeric:
+            known = ", ".join(one.__name__ for one in BOUNDS)
+            raise TypeError(f"{name} must be a number with bounds {known} or Interval, got {bound!r}")
+
+
+def within(name: str, value: Any, bounds: list[Any]) -> Any:
+    """``value`` if it is within all of the bounds.
+
+    Raises:
+        ValueError: when it is not.
+    """
+    for bound in bounds:
+        if (
+            (isinstance(bound, Ge) and not value >= bound.ge)
+            or (isinstance(bound, Gt) and not value > bound.gt)
+            or (isinstance(bound, Le) and not value <= bound.le)
+            or (isinstance(bound, Lt) and not value < bound.lt)
+        ):
+            raise ValueError(f"{name} must be {in_words(bounds)}, got {value!r}")
+    return value
+
+
+def in_words(bounds: list[Any]) -> str:
+    """What the bounds allow, such as ``in [0, 1]``."""
+    least = [(b.ge, False) if isinstance(b, Ge) else (b.gt, True) for b in bounds if isinstance(b, (Ge, Gt))]
+    most = [(b.le, True) if isinstance(b, Le) else (b.lt, False) for b in bounds if isinstance(b, (Le, Lt))]
+    (low, above), (high, included) = max(least, default=(None, False)), min(most, default=(None, False))
+    if low is not None and high is not None:
+        return f"in {'(' if above else '['}{_short(low)}, {_short(high)}{']' if included else ')'}"
+    if low is not None:
+        return f"{'greater than' if above else 'at least'} {_short(low)}"
+    return f"{'at most' if included else 'less than'} {_short(high)}"
+
+
+def _flat(metadata: Sequence[Any]) -> Iterator[Any]:
+    for one in metadata:
+        yield from one if isinstance(one, GroupedMetadata) else [one]
+
+
+def _short(bound: Any) -> str:
+    """``1`` for 1.0, and all of the digits of the others."""
+    return f"{bound:g}" if float(f"{bound:g}") == bound else repr(bound)

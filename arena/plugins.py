@@ -81,11 +81,11 @@ def load_plugin(path: str | Path) -> dict[str, type[Any]]:
     found: dict[str, type[Any]] = {}
     for cls in vars(module).values():
         if _meant_as_agent(cls, source.module):
-            other = found.setdefault(_kebab(cls.__name__), cls)
+            other = found.setdefault(kebab(cls.__name__), cls)
             if other is not cls:
                 raise PluginError(
                     f"plugin {path}: {other.__name__} and {cls.__name__} would both be called "
-                    f"{_kebab(cls.__name__)!r}"
+                    f"{kebab(cls.__name__)!r}"
                 )
     if not found:
         raise PluginError(f"plugin {path} defines no agent: a class with the methods act, learn and greedy")
@@ -103,6 +103,11 @@ def source_of(*classes: type[Any]) -> tuple[PluginSource, ...]:
     modules = {base.__module__ for cls in classes for base in cls.__mro__}
     plugins = (getattr(sys.modules.get(name), "__arena_plugin__", None) for name in sorted(modules))
     return tuple(plugin for plugin in plugins if plugin is not None)
+
+
+def kebab(name: str) -> str:
+    """What an agent is called whose class is ``name``: ``speed-seeker`` for ``SpeedSeeker``."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name).lower().replace("_", "-")
 
 
 class Unavailable(DoesNotLearn):
@@ -152,8 +157,3 @@ def _place(error: BaseException, path: str) -> str:
 def _reason(error: BaseException) -> str:
     text = " ".join((error.msg if isinstance(error, SyntaxError) else str(error)).split())
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
-
-
-def _kebab(name: str) -> str:
-    """``SpeedSeeker`` as ``speed-seeker``."""
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name).lower().replace("_", "-")

@@ -1,10 +1,12 @@
 """What ``arena new-agent`` writes: an agent that runs at once, and its test."""
 
+import keyword
 import re
 from importlib.util import find_spec
 from pathlib import Path
 
-from agents.registry import BUILT_IN
+from agents.registry import all_agents
+from arena.plugins import kebab
 
 AGENT = '''"""{title}: say here where the algorithm comes from."""
 
@@ -81,27 +83,30 @@ def write(name: str, folder: Path) -> tuple[Path, Path]:
     """Write the files of the agent ``name``; those that are there already are left alone.
 
     Args:
-        name: letters, digits and dashes, such as ``my-agent``.
+        name: letters, digits and dashes, such as ``my-agent``; what its class will be called.
         folder: is made if it is not there.
 
     Raises:
         ValueError: when the name is bad or taken, or a file is there already.
     """
-    words = re.split("[-_]", name)
-    if not all(re.fullmatch("[a-z][a-z0-9]*", word) for word in words):
+    if not re.fullmatch("[a-z][a-z0-9]*(-[a-z0-9]+)*", name):
         raise ValueError(f"NAME must be lower-case words joined by dashes, such as my-agent, got {name!r}")
-    module = "_".join(words)
-    parts = {
-        "title": " ".join(words).capitalize(),
-        "class_name": "".join(word.capitalize() for word in words),
-        "module": module,
-    }
+    words = name.split("-")
+    class_name, module = "".join(map(str.capitalize, words)), "_".join(words)
+    called = kebab(class_name)
+    if called != name:  # single letters and numbers run together
+        raise ValueError(
+            f"NAME must be what its class is called, which for {class_name} is {called}, got {name!r}"
+        )
     files = folder / f"{module}.py", folder / f"test_{module}.py"
     for path in files:
         if path.exists():
             raise ValueError(f"{path} is there already")
-    if name in BUILT_IN or name == "grid" or find_spec(module):
-        raise ValueError(f"NAME must not be that of a built-in agent or of a Python module, got {name!r}")
+    if name in all_agents()[0] or find_spec(module):
+        raise ValueError(f"NAME must not be that of another agent or of a Python module, got {name!r}")
+    if keyword.iskeyword(class_name) or re.search(rf"import .*\b{class_name}\b", AGENT):
+        raise ValueError(f"NAME must not be that of a class which the agent needs, got {name!r}")
+    parts = {"title": " ".join(words).capitalize(), "class_name": class_name, "module": module}
     folder.mkdir(parents=True, exist_ok=True)
     for path, text in zip(files, (AGENT, TEST), strict=True):
         path.write_text(text.format(**parts), encoding="utf-8")

@@ -5,19 +5,19 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agents import registry
 from arena import Entrant, Evaluation, Tournament, Training, load_plugin, run
 from arena.cli import main
 from arena.contract_checks import CHECKS
-from arena.plugins import _kebab
 from arena.step_time import seconds_per_step
-from arena.template import AGENT, TEST
+from arena.template import AGENT, TEST, write
 from arena.testing import findings
 
 METHODS = ["create", "act", "learn", "greedy"]
@@ -93,7 +93,21 @@ def test_a_second_call_changes_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["", "-", "My-agent", "my agent", "my--agent", "my-agent-", "2fast", "é", "../up", "a/b", "my.py"]
+    "name",
+    [
+        "",
+        "-",
+        "My-agent",
+        "my_agent",
+        "my agent",
+        "my--agent",
+        "my-agent-",
+        "2fast",
+        "é",
+        "../up",
+        "a/b",
+        "my.py",
+    ],
 )
 def test_a_bad_name_is_refused(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new-agent", "--", name]) == 2
@@ -103,10 +117,10 @@ def test_a_bad_name_is_refused(name: str, capsys: pytest.CaptureFixture[str]) ->
     assert list(Path().iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["sarsa", "q-learning", "random", "numpy", "agents", "grid"])
+@pytest.mark.parametrize("name", ["sarsa", "q-learning", "random", "numpy", "agents"])
 def test_a_name_that_would_hide_another_is_refused(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new-agent", name]) == 2
-    rule = "NAME must not be that of a built-in agent or of a Python module, got"
+    rule = "NAME must not be that of another agent or of a Python module, got"
     assert capsys.readouterr() == ("", f"arena: {rule} {name!r}\n")
     assert list(Path().iterdir()) == []
 
@@ -119,9 +133,44 @@ def test_a_folder_that_cannot_be_made_is_told(capsys: pytest.CaptureFixture[str]
     assert told.count("\n") == 1
 
 
-@given(st.lists(st.from_regex("[a-z][a-z0-9]{1,6}", fullmatch=True), min_size=1, max_size=4))
-def test_an_agent_is_called_as_it_was_asked_for(words: list[str]) -> None:
-    assert _kebab("".join(word.capitalize() for word in words)) == "-".join(words)
+@pytest.mark.parametrize("name", ["grid", "named-tuple", "probability", "step-size", "none", "true"])
+def test_a_name_that_the_agent_needs_for_itself_is_refused(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new-agent", name]) == 2
+    rule = "NAME must not be that of a class which the agent needs, got"
+    assert capsys.readouterr() == ("", f"arena: {rule} {name!r}\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "class_name", "called"),
+    [("a-b", "AB", "ab"), ("my-agent-2", "MyAgent2", "my-agent2"), ("x-1-y", "X1Y", "x1-y")],
+)
+def test_a_name_that_a_class_cannot_have_is_refused_with_the_one_that_it_would_have(
+    name: str, class_name: str, called: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new-agent", name]) == 2
+    told = f"NAME must be what its class is called, which for {class_name} is {called}, got {name!r}"
+    assert capsys.readouterr() == ("", f"arena: {told}\n")
+    assert main(["new-agent", called]) == 0
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.from_regex("[a-z0-9]{1,3}|none|sarsa|grid|[a-zA-Z_]{1,4}", fullmatch=True), max_size=4))
+def test_an_agent_is_called_as_it_was_asked_for_or_refused(words: list[str]) -> None:
+    name = "-".join(words)
+    with tempfile.TemporaryDirectory() as folder:
+        refused = ""
+        try:
+            file, _ = write(name, Path(folder))
+        except ValueError as error:
+            refused = str(error)
+        if refused:
+            assert re.fullmatch(f"NAME must .*, got {name!r}", refused)
+            assert list(Path(folder).iterdir()) == []
+        else:
+            assert list(load_plugin(file)) == [name]
+            registry.forget(f"plugin {os.path.realpath(file)}")
 
 
 def test_the_author_s_part_is_twenty_lines_of_code_at_most() -> None:

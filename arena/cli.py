@@ -15,6 +15,7 @@ from rich.console import Console
 from arena.adaptive import ADAPTIVE
 from arena.builtin import BUILT_IN
 from arena.cli_agents import Plugins, add_commands, load_plugins
+from arena.cli_paper import add_commands as add_paper_command
 from arena.cli_results import add_commands as add_result_commands
 from arena.cli_results import print_results
 from arena.configuration import load_tournament
@@ -32,6 +33,7 @@ app = typer.Typer(
 
 add_commands(app)
 add_result_commands(app)
+add_paper_command(app)
 
 BAD_INPUT = 2
 SOME_FAILED = 1

@@ -6,11 +6,12 @@ from arena.plugins import load_plugin
 from arena.results import Results, load
 from arena.runner import run
 from arena.tournament import Evaluation, Tournament, Training
-from arena.walks import RandomWalk, random_walk
+from arena.walks import InterruptedWalk, RandomWalk, random_walk
 
 __all__ = [
     "Entrant",
     "Evaluation",
+    "InterruptedWalk",
     "RandomWalk",
     "Results",
     "Tournament",

@@ -1,4 +1,4 @@
-"""Algorithm 1 of the paper: random walks that find the bounds of the state and the lengths of episodes."""
+"""Random walks on the hill: the bounds of the state and the lengths of episodes (paper, section 3.2)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,28 +7,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.entrant import plain
 from arena.pool import imap
+from arena.walk_loop import TOGETHER, walk
 from envs import Hill
 from envs.checks import instance, integer
 from envs.compilation import compile_loop
 from envs.streams import stream
 
-_TOGETHER = 25  # episodes a task
-
 Progress = Callable[[int, int], None]
+_Part = tuple[int, NDArray[np.int64], NDArray[np.bool_], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
 class RandomWalk:
-    """What the walks found.
+    """What the walks found: the results of the paper's Algorithm 1.
 
     Attributes:
+        hill: what was driven on.
+        seed: master of the random streams.
+        max_steps: where an episode was given up.
         lengths: int64, shape (episodes,): steps of each.
         reached: bool, shape (episodes,): whether it ended at the goal, not at the limit.
-        position: least and greatest position; the paper begins both at 0.
-        velocity: least and greatest velocity; likewise.
+        position: least and greatest position, in units of length; the paper begins both at 0.
+        velocity: least and greatest velocity, in units of length per unit of time; likewise.
     """
 
+    hill: Hill
+    seed: int
+    max_steps: int
     lengths: NDArray[np.int64]
     reached: NDArray[np.bool_]
     position: tuple[float, float]
@@ -36,12 +43,20 @@ class RandomWalk:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values."""
-        return {
-            "lengths": self.lengths.tolist(),
-            "reached": self.reached.tolist(),
-            "position": list(self.position),
-            "velocity": list(self.velocity),
-        }
+        return {name: plain(value) for name, value in vars(self).items()}
+
+
+class InterruptedWalk(KeyboardInterrupt):
+    """A ``KeyboardInterrupt`` during the walks.
+
+    Attributes:
+        walk: the first of the episodes, as far as they were finished: the same as a series of only these.
+        episodes: how many there should have been.
+    """
+
+    def __init__(self, walk: RandomWalk, episodes: int) -> None:
+        super().__init__(f"interrupted after {len(walk.lengths)} of {episodes} episodes")
+        self.walk, self.episodes = walk, episodes
 
 
 def random_walk(
@@ -49,8 +64,9 @@ def random_walk(
     hill: Hill = Hill(),  # noqa: B008 (immutable)
     seed: int = 0,
     n_jobs: int = -1,
-    max_steps: int = 10_000_000,
+    max_steps: int = 1_000_000,
     *,
+    compiled: bool = True,
     progress: Progress | None = None,
 ) -> RandomWalk:
     """Drive with random actions to the goal, again and again (paper, section 3.2, Algorithm 1).
@@ -63,62 +79,66 @@ def random_walk(
         hill: what to drive on.
         seed: at least 0.
         n_jobs: workers, as joblib counts them.
-        max_steps: where an episode is given up; at least 1.
+        max_steps: where an episode is given up, as on a hill whose goal cannot be reached; at least 1.
+        compiled: whether the loop is compiled; interpreted it gives the same bits, 50 times slower.
         progress: called with the number of finished episodes and of all.
 
     Raises:
         TypeError, ValueError: when an argument breaks its rule.
+        InterruptedWalk: at Ctrl-C, with what was finished.
     """
     instance("hill", hill, Hill)
     total, seed = integer("episodes", episodes, 1), integer("seed", seed, 0)
     limit = integer("max_steps", max_steps, 1)
     if integer("n_jobs", n_jobs) == 0:
         raise ValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
-    compile_loop(_walk, *_arguments(hill, seed, 0, limit))  # once, before the workers look for it
-    tasks = [
-        (hill, seed, first, min(first + _TOGETHER, total), limit) for first in range(0, total, _TOGETHER)
-    ]
-    lengths, reached = np.zeros(total, np.int64), np.zeros(total, np.bool_)
-    bounds = np.zeros(4)
-    done = 0
-    for first, steps, ended, found in imap(n_jobs, _walks, tasks):
-        lengths[first : first + len(steps)], reached[first : first + len(steps)] = steps, ended
-        bounds[0::2] = np.minimum(bounds[0::2], found[0::2])
-        bounds[1::2] = np.maximum(bounds[1::2], found[1::2])
-        done += len(steps)
-        if progress:
-            progress(done, total)
-    least_x, most_x, least_v, most_v = map(float, bounds)
-    return RandomWalk(lengths, reached, (least_x, most_x), (least_v, most_v))
+    parts: dict[int, _Part] = {}
+    try:
+        if compiled:
+            _loop(_arguments(hill, seed, range(1), limit))  # once, before the workers look for it
+        tasks = [
+            (hill, seed, range(first, min(first + TOGETHER, total)), limit, compiled)
+            for first in range(0, total, TOGETHER)
+        ]
+        done = 0
+        for part in imap(n_jobs, _walks, tasks):
+            parts[part[0]] = part
+            done += len(part[1])
+            if progress:
+                progress(done, total)
+    except KeyboardInterrupt:
+        raise InterruptedWalk(_joined(hill, seed, limit, parts), total) from None
+    return _joined(hill, seed, limit, parts)
 
 
-def _walks(
-    hill: Hill, seed: int, first: int, last: int, limit: int
-) -> tuple[int, NDArray[np.int64], NDArray[np.bool_], NDArray[np.float64]]:
-    """In a worker: the episodes from ``first`` to ``last``."""
-    lengths, reached = np.zeros(last - first, np.int64), np.zeros(last - first, np.bool_)
-    bounds = np.zeros(4)
-    for place, episode in enumerate(range(first, last)):
-        arguments = (*_arguments(hill, seed, episode, limit)[:-1], bounds)
-        lengths[place], reached[place] = compile_loop(_walk, *arguments)(*arguments)
-    return first, lengths, reached, bounds
+def _joined(hill: Hill, seed: int, limit: int, parts: dict[int, _Part]) -> RandomWalk:
+    """All episodes before the first that is missing."""
+    lengths, reached, bounds = np.zeros(0, np.int64), np.zeros(0, np.bool_), np.zeros((1, 4))
+    for place, first in enumerate(sorted(parts)):
+        if first != place * TOGETHER:
+            break
+        _, steps, there, found = parts[first]
+        lengths, reached = np.append(lengths, steps), np.append(reached, there)
+        bounds = np.vstack([bounds, found])
+    least_x, _, least_v, _ = map(float, bounds.min(axis=0))
+    _, most_x, _, most_v = map(float, bounds.max(axis=0))
+    return RandomWalk(hill, seed, limit, lengths, reached, (least_x, most_x), (least_v, most_v))
 
 
-def _arguments(hill: Hill, seed: int, episode: int, limit: int) -> tuple[Any, ...]:
-    return hill, stream(seed, "walk", str(episode)), limit, np.zeros(4)
+def _walks(hill: Hill, seed: int, episodes: range, limit: int, compiled: bool) -> _Part:
+    """In a worker: some of the episodes."""
+    arguments = _arguments(hill, seed, episodes, limit)
+    (_loop(arguments) if compiled else walk)(*arguments)
+    lengths, reached, bounds = arguments[-3:]
+    return episodes.start, lengths, reached, bounds
 
 
-def _walk(
-    hill: Any, rng: np.random.Generator, max_steps: int, bounds: NDArray[np.float64]
-) -> tuple[int, bool]:
-    """One episode: its steps and whether it reached the goal; ``bounds`` are widened."""
-    position, velocity = hill.reset(rng)
-    least_x, most_x, least_v, most_v = bounds
-    steps, terminated = 0, False
-    while steps < max_steps and not terminated:
-        (position, velocity), _, terminated = hill.step((position, velocity), int(rng.random() * 3.0))
-        least_x, most_x = min(least_x, position), max(most_x, position)
-        least_v, most_v = min(least_v, velocity), max(most_v, velocity)
-        steps += 1
-    bounds[0], bounds[1], bounds[2], bounds[3] = least_x, most_x, least_v, most_v
-    return steps, terminated
+def _loop(arguments: tuple[Any, ...]) -> Callable[..., Any]:
+    return compile_loop(walk, *arguments)
+
+
+def _arguments(hill: Hill, seed: int, episodes: range, limit: int) -> tuple[Any, ...]:
+    rngs = [stream(seed, "walk", str(episode)) for episode in episodes]
+    spare = [stream(seed, "walk", "spare")] * (TOGETHER + 1 - len(rngs))
+    lengths, reached = np.zeros(len(rngs), np.int64), np.zeros(len(rngs), np.bool_)
+    return hill, hill.n_actions, (*rngs, *spare), limit, lengths, reached, np.zeros(4)

@@ -34,7 +34,8 @@ def paper(
     as_json: AsJson = False,
 ) -> None:
     """Print a verdict on every claim of the paper, from a results file of its tournament."""
-    from arena.paper_claims import WALKS, paper_claims, paper_tables
+    from arena.paper_claims import WALKS, paper_claims
+    from arena.paper_tables import paper_tables
     from arena.walks import random_walk
 
     if walks < 2:

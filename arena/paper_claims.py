@@ -7,13 +7,12 @@ distribution of that number over our replicates.
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from arena.comparison import MINIMUM_ACCURACY, Key, published
 from arena.curves import moving_average, settled
+from arena.paper_tables import SCORES, Floats, iterations_spread, paper_tables
 from arena.places import at_most, holm, paired_permutation_test
 from arena.results import Results
 from arena.statistics import correlation
@@ -27,13 +26,10 @@ from arena.verdicts import (
 from arena.walks import RandomWalk
 
 WALKS = 2000  # of a series
-_SCORES = ("accuracy", "mean_length", "iterations")
 _BEST = ("sarsa", 20, 30)
 _LEVEL = 0.05  # of the tests
 _TAIL = 0.025  # of the replicates: what is rarer is not reproduced
 _NEAR, _CALM = 1.2, 0.1  # Figure 4 converges if it stays so near its end, a factor, in that last share
-
-Floats = NDArray[np.float64]
 
 
 def paper_claims(results: Results, walks: Sequence[RandomWalk]) -> list[Claim]:
@@ -59,38 +55,11 @@ def paper_claims(results: Results, walks: Sequence[RandomWalk]) -> list[Claim]:
     ]
 
 
-def paper_tables(results: Results) -> dict[str, Floats]:
-    """Each score of the paper, shape (cells, replicates), the cells in the paper's order.
-
-    Raises:
-        ValueError: when the results are not those of the whole tournament.
-    """
-    cells = {key: number for number, key in enumerate(published())}
-    count = results.config["replicates"]
-    named = results.config["name"] == "paper" and isinstance(count, int)
-    finished = [run for run in results.runs if run["status"] == "finished"] if named else []
-    runs = {(_key(run), run["replicate"]): run for run in finished}
-    if not runs or runs.keys() != {(key, number) for key in cells for number in range(count)}:
-        raise ValueError(f"results must be those of the tournament paper, all runs finished, got {results!r}")
-    if count < 2:
-        raise ValueError("results must have 2 replicates or more, got 1")
-    found = {score: np.full((len(cells), count), math.nan) for score in _SCORES}
-    for (key, replicate), run in runs.items():
-        for score in _SCORES:
-            found[score][cells[key], replicate] = math.nan if run[score] is None else run[score]
-    return found
-
-
-def _key(run: dict[str, Any]) -> Key:
-    n_p, n_v = run["parameters"]["bins"]
-    return run["agent"], n_p, n_v
-
-
 def _walk_claims(walks: Sequence[RandomWalk]) -> Iterator[Claim]:
     lengths = np.array([walk.lengths for walk in walks], dtype=float)
     bounds = np.array([(*walk.velocity, *walk.position) for walk in walks]).T
     for statement, paper, sample in (
-        (f"least length of {WALKS:,} random walks", 865, lengths.min(axis=1)),
+        ("least length of a random walk", 865, lengths.min(axis=1)),
         ("greatest length", 324_776, lengths.max(axis=1)),
         ("mean length", 42_209.101, lengths.mean(axis=1)),
         ("standard deviation of the lengths", 37_989.213, lengths.std(axis=1)),
@@ -110,11 +79,11 @@ def _walk_claims(walks: Sequence[RandomWalk]) -> Iterator[Claim]:
         note="percent that do; reproduced if it is more than 50 in more than 2.5% of our series",
     )
     why = "of the paper's machine and program"
-    yield untestable_claim("3.2", f"seconds for {WALKS:,} walks", 1057.793, [], why)
+    yield untestable_claim("3.2", "seconds for 2,000 walks", 1057.793, [], why)
 
 
 def _cell_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
-    for score, table, column in zip(_SCORES, ("Table 1", "Table 1", "Table 2"), range(3), strict=True):
+    for score, table, column in zip(SCORES, ("Table 1", "Table 1", "Table 2"), range(3), strict=True):
         for number, ((algorithm, n_p, n_v), row) in enumerate(published().items()):
             statement = f"{score.replace('_', ' ')} of {algorithm} {n_p}x{n_v}"
             yield number_claim(table, statement, row[column], tables[score][number])
@@ -174,21 +143,8 @@ def _iteration_claims(iterations: Floats) -> Iterator[Claim]:
     yield number_claim("Table 2", "distance from our mean iterations", distance, spread, note)
 
 
-def iterations_spread(iterations: Floats) -> Floats:
-    """How far each replicate is from the mean of the others: root mean square over the cells, in percent.
-
-    So far would the paper's Table 2 be from our means if its protocol were ours.
-
-    Args:
-        iterations: shape (cells, replicates).
-    """
-    others = (iterations.sum(axis=1, keepdims=True) - iterations) / (iterations.shape[1] - 1)
-    spread: Floats = 100.0 * np.sqrt(np.mean((iterations / others - 1.0) ** 2, axis=0))
-    return spread
-
-
 def _correlation_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
-    accuracy, length, iterations = (tables[score] for score in _SCORES)
+    accuracy, length, iterations = (tables[score] for score in SCORES)
     first, second = slice(0, 16), slice(16, 32)
     of_lengths = [row[1] for row in published().values()]
     printed = correlation(of_lengths[first], of_lengths[second])
@@ -211,7 +167,7 @@ def _correlation_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
 
 def _algorithm_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
     theirs = np.array(list(published().values()))
-    for column, score in enumerate(_SCORES):
+    for column, score in enumerate(SCORES):
         one, other = tables[score][:16], tables[score][16:]
         differences = _mean_of_cells(other) - _mean_of_cells(one)
         p = _chance(differences)
@@ -246,8 +202,8 @@ def _figure_claims(results: Results) -> Iterator[Claim]:
         math.nan,
         firsts,
         reproduced=bool(np.mean(np.array(firsts) > last) <= 2.0 * _TAIL),
-        note=f"ours: the episode from which on it stays within {100.0 * (_NEAR - 1.0):.0f}% of the mean of the "
-        f"last {100.0 * _CALM:.0f}%; reproduced if that is before episode {last:,.0f} in 95% of the replicates",
+        note=f"ours: the episode from which on it stays within {100.0 * (_NEAR - 1.0):.0f}% of the mean of "
+        f"the last {100.0 * _CALM:.0f}%; reproduced if that is before episode {last:,.0f} in 95%",
     )
     ends, why = [curve[-1] for curve in curves], "the figure's numbers are not in the text"
     yield untestable_claim("Figure 4", "moving average of the rewards at the end", math.nan, ends, why)

@@ -23,7 +23,7 @@ from agents import HarmonicRate, LinearDecay, QLearning, Sarsa
 from arena import Results, Tournament, run, sweep
 from arena.builtin import PAPER_BINS
 from arena.comparison import compare
-from arena.paper_claims import iterations_spread, paper_tables
+from arena.paper_tables import iterations_spread, paper_tables
 from envs import Hill
 
 STUDY = "sqlite:///runs/readings.sqlite"

@@ -15,9 +15,11 @@ from rich.console import Console
 from arena.adaptive import ADAPTIVE
 from arena.builtin import BUILT_IN
 from arena.cli_agents import Plugins, add_commands, load_plugins
+from arena.cli_curves import add_commands as add_curves_command
 from arena.cli_paper import add_commands as add_paper_command
 from arena.cli_results import add_commands as add_result_commands
 from arena.cli_results import print_results
+from arena.cli_walk import add_commands as add_walk_command
 from arena.configuration import load_tournament
 from arena.results import Results, load
 from arena.runner import run as run_tournament
@@ -33,7 +35,9 @@ app = typer.Typer(
 
 add_commands(app)
 add_result_commands(app)
+add_curves_command(app)
 add_paper_command(app)
+add_walk_command(app)
 
 BAD_INPUT = 2
 SOME_FAILED = 1

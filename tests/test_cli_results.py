@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -109,9 +110,33 @@ def test_the_gate_opens_and_closes(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.usefixtures("files")
+def test_curves_tell_how_fast_entrants_learn(capsys: pytest.CaptureFixture[str]) -> None:
+    made_up({"quick": NOISE, "slow": NOISE[:3]}, Path("fast.sqlite"), iterations=100).close()
+    text = told(capsys, "curves", "fast.sqlite", "--window", "3", "--level", "10")
+    assert re.search(r"^ quick +10\.0 ± 0\.0 +10 of 10 +3 $", text, re.MULTILINE)
+    assert re.search(r"^ slow +10\.0 ± 0\.0 +3 of 3 +3 $", text, re.MULTILINE)
+    never = json.loads(told(capsys, "curves", "fast.sqlite", "--window", "3", "--level", "9.5", "--json"))
+    assert never["entrants"][0] == {
+        "entrant": "quick",
+        "area": 10.0,
+        "area_error": 0.0,
+        "settled": 0,
+        "replicates": 10,
+        "median_episode": None,
+    }
+    assert "- " in told(capsys, "curves", "fast.sqlite")  # ten episodes, a window of 50
+    lines = told(capsys, "curves", "fast.sqlite", "--csv", "--window", "3").splitlines()
+    assert lines[:2] == ["entrant,replicate,area,settled", "quick,0,10.0,3.0"]
+
+
+@pytest.mark.usefixtures("files")
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        ("curves old.sqlite --window 0", "window must be at least 1, got 0"),
+        ("curves old.sqlite --level nan", "level must be a finite number, got nan"),
+        ("curves old.sqlite --confidence 1", "confidence must be between 0 and 1, got 1.0"),
+        ("curves old.sqlite --json --csv", "--json and --csv must not be given together"),
         ("show old.sqlite --by speed", "Invalid value for '--by'"),
         ("show old.sqlite --confidence 2", "confidence must be between 0 and 1, got 2.0"),
         ("show old.sqlite --confidence nan", "confidence must be a finite number"),

@@ -76,6 +76,10 @@ class Registered:
     origin: str
 
 
+class BrokenAgentError(ValueError):
+    """An agent of an installed package that cannot be used; the message is one sentence that says why."""
+
+
 _registered: dict[str, Registered] = {}
 
 
@@ -87,7 +91,7 @@ def register(name: str, agent: type[Any], origin: str = "registered by a script"
         ValueError: when the name is taken.
     """
     check_methods(agent)
-    taken = {**_built_in(), **_installed()[0], **_registered}.get(name)
+    taken = all_agents()[0].get(name)
     if taken and taken.origin != origin:
         raise ValueError(f"agent {name!r} of {origin} has a name that is taken: {taken.origin}")
     _registered[name] = Registered(name, agent, origin)
@@ -101,23 +105,24 @@ def forget(origin: str) -> None:
 
 def all_agents() -> tuple[dict[str, Registered], list[str]]:
     """All agents by name, and a line for each installed plugin that is broken."""
-    installed, broken = _installed()
-    return {**_built_in(), **installed, **_registered}, list(broken)
+    installed, broken, taken = _installed()
+    built_in = {name: Registered(name, agent, "built in") for name, agent in BUILT_IN.items()}
+    return {**built_in, **installed, **_registered}, [*broken.values(), *taken]
 
 
 def agent_class(name: str) -> type[Any]:
     """The class of the agent called ``name``.
 
     Raises:
+        BrokenAgentError: a ValueError; when it is one of an installed package that is broken.
         ValueError: when there is none; the message lists those there are.
     """
-    if name in BUILT_IN:  # spares loading the packages
+    if isinstance(name, str) and name in BUILT_IN:  # spares loading the packages
         return BUILT_IN[name]
-    known, broken = all_agents()
-    try:
-        return known[choice("agent", name, known)].agent
-    except ValueError as error:
-        raise ValueError("; ".join([str(error), *broken])) from None
+    known, broken = all_agents()[0], _installed()[1]
+    if choice("agent", name, {*known, *broken}) not in known:
+        raise BrokenAgentError(broken[name])
+    return known[name].agent
 
 
 def agent_name(cls: type[Any]) -> str:
@@ -156,15 +161,12 @@ def check_methods(agent: Any) -> None:
             continue
 
 
-def _built_in() -> dict[str, Registered]:
-    return {name: Registered(name, agent, "built in") for name, agent in BUILT_IN.items()}
-
-
 @cache
-def _installed() -> tuple[dict[str, Registered], tuple[str, ...]]:
-    """The agents of installed packages, and a line for each that is broken."""
+def _installed() -> tuple[dict[str, Registered], dict[str, str], tuple[str, ...]]:
+    """The agents of installed packages; a line for each that is broken; one for each whose name is taken."""
     found: dict[str, Registered] = {}
-    broken = []
+    broken: dict[str, str] = {}
+    clashes = []
     for entry in sorted(entry_points(group=GROUP), key=lambda entry: (entry.name, entry.value)):
         origin = _origin(entry)
         try:
@@ -174,14 +176,14 @@ def _installed() -> tuple[dict[str, Registered], tuple[str, ...]]:
             raise
         except BaseException as error:  # whatever the package raises; sys.exit, too
             reason = " ".join(f"{type(error).__name__}: {error}".split())
-            broken.append(f"agent {entry.name!r} of {origin} is broken: {reason}")
+            broken[entry.name] = f"agent {entry.name!r} of {origin} is broken: {reason}"
             continue
         if entry.name in BUILT_IN or entry.name in found:
             taken = found[entry.name].origin if entry.name in found else "built in"
-            broken.append(f"agent {entry.name!r} of {origin} has a name that is taken: {taken}")
+            clashes.append(f"agent {entry.name!r} of {origin} has a name that is taken: {taken}")
             continue
         found[entry.name] = Registered(entry.name, agent, origin)
-    return found, tuple(broken)
+    return found, broken, tuple(clashes)
 
 
 def _origin(entry: EntryPoint) -> str:

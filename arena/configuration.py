@@ -4,13 +4,16 @@ import logging
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from agents import agent_class
+from agents.registry import BrokenAgentError, all_agents
 from arena.entrant import Entrant, sweep
-from arena.plugins import PluginError, Unavailable, load_plugin
+from arena.plugins import PluginError, load_plugin
 from arena.tournament import Evaluation, Tournament, Training
+from arena.unavailable import unavailable
 from envs import Hill
 from envs.checks import choice
 
@@ -24,8 +27,8 @@ def load_tournament(path: str | Path, **changes: Any) -> Tournament:
 
     Its tables are the arguments of ``Tournament``, ``Hill``, ``Training`` and ``Evaluation``; each
     ``[[entrants]]`` has an ``agent`` and may have a ``name``, ``parameters`` and a ``sweep``. Its
-    ``plugins`` are files with agents, relative to its folder. The entrants of one that is broken fail,
-    the others race.
+    ``plugins`` are files with agents, relative to its folder. The entrants of one that is broken, or of
+    an installed package that is, fail; the others race.
 
     Args:
         path: of the file; its stem is the tournament's name if the file gives none.
@@ -75,7 +78,7 @@ def from_dict(content: Mapping[str, Any], folder: Path = Path()) -> Tournament:
     return Tournament(tuple(one for table in tables for one in _entrants(table, broken)), **arguments)
 
 
-def _load_plugins(plugins: Any, folder: Path) -> list[str]:
+def _load_plugins(plugins: Any, folder: Path) -> list[PluginError]:
     """Load them; what is wrong with those that are broken."""
     if not isinstance(plugins, list) or not all(isinstance(plugin, str) for plugin in plugins):
         raise TypeError(f"plugins must be a list of files, got {plugins!r}")
@@ -84,7 +87,7 @@ def _load_plugins(plugins: Any, folder: Path) -> list[str]:
         try:
             load_plugin(folder / plugin)
         except PluginError as error:
-            broken.append(str(error))
+            broken.append(error)
             _log.warning("%s", error)
     return broken
 
@@ -98,7 +101,29 @@ def _build(name: str, kind: type[Any], table: Any) -> Any:
     return kind(**table)
 
 
-def _entrants(table: Any, broken: list[str]) -> Iterator[Entrant]:
+def _agent(name: Any, broken: list[PluginError]) -> type[Any]:
+    """The class called ``name``; what stands in for it if it is, or may be, one of a broken plugin.
+
+    Raises:
+        ValueError: when there is none, or the name is a misspelt one.
+    """
+    try:
+        return agent_class(name)
+    except BrokenAgentError as error:
+        _log.warning("%s", error)
+        return unavailable(name, str(error))
+    except ValueError:
+        if not broken or not isinstance(name, str) or not name.isprintable():
+            raise
+    known = {*all_agents()[0]}.union(*(one.agents or () for one in broken))
+    unread = any(one.agents is None for one in broken)
+    if name not in known and not unread and get_close_matches(name, known, n=1):
+        choice("agent", name, known)
+    reasons = [str(one) for one in broken if name in (one.agents or ())] or map(str, broken)
+    return unavailable(name, f"agent {name!r} is not available: {'; '.join(reasons)}")
+
+
+def _entrants(table: Any, broken: list[PluginError]) -> Iterator[Entrant]:
     if not isinstance(table, Mapping):
         raise TypeError(f"each of entrants must be a table, got {table!r}")
     for key in table:
@@ -106,13 +131,7 @@ def _entrants(table: Any, broken: list[str]) -> Iterator[Entrant]:
     if "agent" not in table:
         raise ValueError("each of entrants must have an agent")
     name = table.get("name", table["agent"])
-    try:
-        agent = agent_class(table["agent"])
-    except ValueError:
-        if not broken:
-            raise
-        yield Entrant(name, Unavailable, agent=str(table["agent"]), reason="; ".join(broken))
-        return
+    agent = _agent(table["agent"], broken)
     parameters, over = table.get("parameters", {}), table.get("sweep", {})
     for key, value in (("parameters", parameters), ("sweep", over)):
         if not isinstance(value, Mapping):

@@ -6,9 +6,9 @@ import struct
 from collections.abc import Mapping
 from typing import Any
 
+from arena.continuation import FREE
 from arena.outcome import Arrays
 from arena.results import Results
-from arena.store import FREE
 
 
 def digest(results: Results) -> str:

@@ -14,6 +14,7 @@ from agents.parameters import settle_all
 from agents.registry import check_methods
 from arena.freshness import check_fresh, code_digest
 from arena.plugins import PluginSource, source_of
+from arena.unavailable import Unavailable
 
 
 @dataclass(frozen=True, init=False)
@@ -77,13 +78,18 @@ class Entrant:
         given = {name: self.parameters[name] for name in self.given}
         return Entrant(self.name, self.agent, **(given | parameters))
 
+    @property
+    def unavailable(self) -> str:
+        """Why its agent cannot be had, one sentence; empty if it can."""
+        return self.agent.reason if issubclass(self.agent, Unavailable) else ""
+
     def to_dict(self) -> dict[str, Any]:
-        """Name, agent's name and all parameters, as plain values that JSON and TOML can hold."""
-        return {
-            "name": self.name,
-            "agent": agent_name(self.agent),
-            "parameters": {name: plain(value) for name, value in self.parameters.items()},
-        }
+        """Name, agent's name and all parameters, as plain values that JSON and TOML can hold.
+
+        Of an agent that cannot be had these are the name and the parameters that were asked for.
+        """
+        told = {"name": self.name, "agent": agent_name(self.agent), "parameters": plain(self.parameters)}
+        return told | {"agent": self.agent.asked, "unavailable": True} if self.unavailable else told
 
 
 def sweep(

@@ -14,12 +14,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from agents.references import DoesNotLearn
 from agents.registry import forget, register
 
 
 class PluginError(ValueError):
-    """A plugin that cannot be used; the message is one sentence that names it."""
+    """A plugin that cannot be used; the message is one sentence that names it.
+
+    Attributes:
+        agents: what its agents would be called; None if it cannot even be read.
+    """
+
+    agents: frozenset[str] | None = None
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,11 @@ class PluginSource:
     module: str
     path: str
     text: str
+
+    @property
+    def agents(self) -> frozenset[str]:
+        """What its classes would be called as agents, even if it is not Python."""
+        return frozenset(map(kebab, re.findall(r"^[ \t]*class[ \t]+(\w+)", self.text, re.MULTILINE)))
 
     def load(self) -> types.ModuleType:
         """The module; run once a process."""
@@ -73,6 +83,44 @@ def load_plugin(path: str | Path) -> dict[str, type[Any]]:
     forget(origin)
     source = _read(path)
     try:
+        return _register(path, source, origin)
+    except PluginError as error:
+        error.agents = source.agents
+        raise
+
+
+def source_of(*classes: type[Any]) -> tuple[PluginSource, ...]:
+    """The plugins that the classes or their bases come from."""
+    modules = {base.__module__ for cls in classes for base in cls.__mro__}
+    plugins = (getattr(sys.modules.get(name), "__arena_plugin__", None) for name in sorted(modules))
+    return tuple(plugin for plugin in plugins if plugin is not None)
+
+
+def kebab(name: str) -> str:
+    """What an agent is called whose class is ``name``: ``speed-seeker`` for ``SpeedSeeker``."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name).lower().replace("_", "-")
+
+
+def _revive(module: str, path: str, text: str) -> PluginSource:
+    source = PluginSource(module, path, text)
+    source.load()
+    return source
+
+
+def _read(path: Path) -> PluginSource:
+    try:
+        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
+    except FileNotFoundError:
+        raise PluginError(f"there is no plugin file {path}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise PluginError(f"plugin {path} cannot be read: {error}") from error
+    stem = re.sub(r"\W", "_", path.stem)
+    digest = hashlib.sha256(text.encode()).hexdigest()[:12]
+    return PluginSource(f"{stem}_{digest}", str(path.resolve()), text)
+
+
+def _register(path: Path, source: PluginSource, origin: str) -> dict[str, type[Any]]:
+    try:
         module = source.load()
     except KeyboardInterrupt:
         raise
@@ -96,43 +144,6 @@ def load_plugin(path: str | Path) -> dict[str, type[Any]]:
             forget(origin)  # all of it or nothing
             raise PluginError(f"plugin {path}: {error}") from error
     return found
-
-
-def source_of(*classes: type[Any]) -> tuple[PluginSource, ...]:
-    """The plugins that the classes or their bases come from."""
-    modules = {base.__module__ for cls in classes for base in cls.__mro__}
-    plugins = (getattr(sys.modules.get(name), "__arena_plugin__", None) for name in sorted(modules))
-    return tuple(plugin for plugin in plugins if plugin is not None)
-
-
-def kebab(name: str) -> str:
-    """What an agent is called whose class is ``name``: ``speed-seeker`` for ``SpeedSeeker``."""
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name).lower().replace("_", "-")
-
-
-class Unavailable(DoesNotLearn):
-    """Stands in for an agent of a broken plugin: its runs fail, and say why."""
-
-    def __init__(self, *, agent: str, reason: str) -> None:
-        raise ImportError(f"agent {agent!r} is not available: {reason}")
-
-
-def _revive(module: str, path: str, text: str) -> PluginSource:
-    source = PluginSource(module, path, text)
-    source.load()
-    return source
-
-
-def _read(path: Path) -> PluginSource:
-    try:
-        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
-    except FileNotFoundError:
-        raise PluginError(f"there is no plugin file {path}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise PluginError(f"plugin {path} cannot be read: {error}") from error
-    stem = re.sub(r"\W", "_", path.stem)
-    digest = hashlib.sha256(text.encode()).hexdigest()[:12]
-    return PluginSource(f"{stem}_{digest}", str(path.resolve()), text)
 
 
 def _meant_as_agent(cls: Any, module: str) -> bool:

@@ -72,7 +72,7 @@ def run(
     path = None if out is None else Path(out)
     config = tournament.to_dict()
     resuming = path is not None and path.exists()
-    agents = {entrant.agent for entrant in tournament.entrants}
+    agents = {entrant.agent for entrant in tournament.entrants if not entrant.unavailable}
     sources = source_digests(agents)
     renew_workers(agents)
     store = Store.resume(path, config, sources) if path is not None and resuming else None
@@ -123,11 +123,14 @@ def _say_what_starts_anew(conditions: Conditions, runs: list[Run]) -> None:
 
 
 def _travel(runs: list[Run]) -> dict[str, str]:
-    """Why not, by entrant, for those that cannot be sent to a worker."""
+    """Why not, by entrant, for those whose agent cannot be had or sent to a worker."""
     import cloudpickle
 
     reasons: dict[str, str] = {}
     for entrant in {run.entrant.name: run.entrant for run in runs}.values():
+        if entrant.unavailable:
+            reasons[entrant.name] = entrant.unavailable
+            continue
         try:
             cloudpickle.dumps(entrant)
         except Exception as error:  # whatever its classes raise

@@ -18,6 +18,7 @@ from typing import Any
 from filelock import FileLock
 
 from arena.adaptive import ADAPTIVE, MOST
+from arena.continuation import as_read, continued, difference
 from arena.locks import LockedError, lock_file, unlock
 from arena.outcome import Arrays, Outcome, unpack
 from arena.provenance import versions
@@ -37,11 +38,6 @@ CREATE TABLE arrays (
 PRAGMA application_id = {APPLICATION_ID};
 PRAGMA user_version = {SCHEMA_VERSION};
 """
-
-
-# Changing these changes no result, so a tournament may be continued with others.
-FREE = {"time_limit", "memory_limit"}
-
 
 _NUMBER = (int, float, type(None))
 _MOST = 1e15  # more than any score or count
@@ -127,18 +123,11 @@ class Store:
         except (LockedError, OSError) as error:
             store.close()
             raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
-        difference = _difference(store.config, config)
-        if difference:
+        try:
+            store._continue(as_read(config), sources)  # noqa: SLF001 (its own)
+        except BaseException:
             store.close()
-            raise ResultsError(
-                f"{path} holds another tournament ({difference}); name another file or remove this one"
-            )
-        for agent, before in store._told("sources").items():  # noqa: SLF001 (its own)
-            if sources.get(agent, before) != before:
-                store.close()
-                raise ResultsError(
-                    f"{path} holds runs of other code of {agent!r}; name another file or remove this one"
-                )
+            raise
         return store
 
     @classmethod
@@ -167,6 +156,25 @@ class Store:
             raise ResultsError(f"{path} is not a results file of the arena: {_words(error)}") from error
         return store
 
+    def _continue(self, config: dict[str, Any], sources: Mapping[str, str]) -> None:
+        """See that this is the same tournament, and keep what was not known of agents until now."""
+        before, code = self.config, self._told("sources")
+        differs = difference(before, config)
+        if differs:
+            raise ResultsError(
+                f"{self.path} holds another tournament ({differs}); name another file or remove this one"
+            )
+        for agent, digest in code.items():
+            if sources.get(agent, digest) != digest:
+                raise ResultsError(
+                    f"{self.path} holds runs of other code of {agent!r}; name another file or remove this one"
+                )
+        told = {"config": continued(before, config), "sources": {**code, **sources}}
+        if told != {"config": before, "sources": code}:
+            rows = [(json.dumps(value), key) for key, value in told.items()]
+            with self._writing():
+                self._connection.executemany("UPDATE tournament SET value = ? WHERE key = ?", rows)
+
     def _check(self) -> None:
         (application,) = self._connection.execute("PRAGMA application_id").fetchone()
         (version,) = self._connection.execute("PRAGMA user_version").fetchone()
@@ -177,7 +185,8 @@ class Store:
                 f"{self.path} was written by a newer arena (schema {version}, known is {SCHEMA_VERSION})"
             )
         with self._reading():
-            if not _sound(self.config) or not isinstance(self.versions, dict):
+            told = self.versions, self._told("sources")
+            if not _sound(self.config) or not all(isinstance(one, dict) for one in told):
                 raise TypeError("its tournament is incomplete")
 
     @contextmanager
@@ -193,6 +202,16 @@ class Store:
             raise ResultsError(
                 f"{self.path} is damaged: its arrays cannot be read ({_words(error)})"
             ) from error
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """One transaction."""
+        try:
+            with self._connection:
+                self._connection.execute("BEGIN IMMEDIATE")
+                yield
+        except sqlite3.Error as error:
+            raise ResultsError(f"cannot write the results file {self.path}: {_words(error)}") from error
 
     @property
     def config(self) -> dict[str, Any]:
@@ -215,17 +234,11 @@ class Store:
         key = (outcome.entrant, outcome.replicate)
         scores = (outcome.driver, outcome.status, outcome.accuracy, outcome.mean_length)
         costs = (outcome.iterations, outcome.seconds, outcome.error)
-        try:
-            with self._connection:
-                self._connection.execute("BEGIN IMMEDIATE")
-                self._connection.execute(
-                    "INSERT OR REPLACE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", key + scores + costs
-                )
-                self._connection.execute(
-                    "INSERT OR REPLACE INTO arrays VALUES (?, ?, ?)", (*key, outcome.arrays)
-                )
-        except sqlite3.Error as error:
-            raise ResultsError(f"cannot write the results file {self.path}: {_words(error)}") from error
+        with self._writing():
+            self._connection.execute(
+                "INSERT OR REPLACE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", key + scores + costs
+            )
+            self._connection.execute("INSERT OR REPLACE INTO arrays VALUES (?, ?, ?)", (*key, outcome.arrays))
 
     def finished(self) -> set[tuple[str, int]]:
         """Entrant and replicate of the runs that need not be repeated."""
@@ -321,17 +334,6 @@ def _sound_numbers(config: dict[str, Any]) -> bool:
     counts = isinstance(most, int) and 1 <= most <= MOST and isinstance(leaders, int) and leaders >= 1
     level = isinstance(confidence, float) and 0.0 < confidence < 1.0
     return config["replicates"] == ADAPTIVE and counts and level
-
-
-def _difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
-    """The first thing in which two tournaments differ, in words; empty if they are the same."""
-    ours = json.loads(json.dumps(ours))
-    for key in {**ours, **theirs}:
-        if key not in FREE and theirs.get(key) != ours.get(key):
-            if isinstance(ours.get(key), (str, int)):
-                return f"its {key} is {theirs.get(key)!r}, not {ours[key]!r}"
-            return f"its {key} differ"
-    return ""
 
 
 def _words(error: BaseException) -> str:

@@ -38,6 +38,9 @@ def verify(results: Results, runs: int = 4) -> Iterator[str]:
         raise ValueError(f"{results.path} has no finished run that could be verified")
     finished = [one for one in results.config["entrants"] if any(one["name"] == name for name, _ in stored)]
     tournament = from_dict({**results.config, "entrants": finished})
+    for entrant in tournament.entrants:
+        if entrant.unavailable:
+            raise ValueError(entrant.unavailable)
     sample = random.Random(0).sample(sorted(stored), min(integer("runs", runs, 1), len(stored)))  # noqa: S311
     chosen = [run for run in tournament.runs if (run.entrant.name, run.replicate) in sample]
     for backend, n_jobs, other in (("loky", 1, True), ("threading", 2, False)):

@@ -3,7 +3,6 @@
 import json
 import sys
 from collections.abc import Iterator
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -14,21 +13,14 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from arena.distributions import BOOTSTRAPS
 from arena.hills import find_hill
 from arena.walk_study import PAPER, REASONABLE, Summary, WalkStudy, study
 from arena.walks import InterruptedWalk, RandomWalk, random_walk
-from envs import Hill
-from envs import Integrator as OfHill
+from envs import Hill, Integrator
 
 INTERRUPTED = 130
 _PICTURES = (".png", ".svg", ".pdf")
-
-
-class Integrator(StrEnum):
-    """Choices of ``--integrator``."""
-
-    SEMI_IMPLICIT = "semi-implicit"
-    EXPLICIT = "explicit"
 
 
 def walk(
@@ -40,7 +32,8 @@ def walk(
         ),
     ] = "paper",
     integrator: Annotated[
-        Integrator | None, typer.Option(help="By default both, the hill's own first.")
+        str | None,
+        typer.Option(help="By default both, the hill's own first.", metavar="semi-implicit|explicit"),
     ] = None,
     seed: Annotated[int, typer.Option(help="Master seed.", metavar="S")] = 0,
     jobs: Annotated[int, typer.Option(help="Workers; -1 is one a core.", metavar="N")] = -1,
@@ -55,15 +48,14 @@ def walk(
     """Walk at random to the goal: bounds of the state, lengths of episodes, and their distribution."""
     if jobs == 0:
         raise ValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
-    if figure and figure.suffix not in _PICTURES:
-        raise ValueError(f"--figure must end in one of {', '.join(_PICTURES)}, got {str(figure)!r}")
-    for option, file in (("--out", out), ("--figure", figure)):
-        if file and (file.is_dir() or not file.parent.is_dir()):
-            raise ValueError(f"{option} must be a file in a folder that exists, got {str(file)!r}")
+    _check_files(out, figure)
     chosen = find_hill(hill)
     walks, stopped = _walks(_hills(chosen, integrator), episodes, seed, jobs, max_steps)
     if walks:
-        found = study(walks)
+        try:
+            found = study(walks, 0 if stopped else BOOTSTRAPS, jobs)
+        except KeyboardInterrupt:
+            found, stopped = study(walks, 0), "interrupted while distributions were fitted"
         told = json.dumps(found.to_dict(), allow_nan=False)
         if out:
             out.write_text(told + "\n", encoding="utf-8")
@@ -80,10 +72,19 @@ def walk(
         raise typer.Exit(INTERRUPTED)
 
 
-def _hills(hill: Hill, integrator: Integrator | None) -> list[Hill]:
-    if integrator:
-        return [hill._replace(integrator=OfHill[integrator.name])]
-    return [hill, *(hill._replace(integrator=other) for other in OfHill if other != hill.integrator)]
+def _check_files(out: Path | None, figure: Path | None) -> None:
+    """Before the walks, so that none are in vain."""
+    if figure and figure.suffix not in _PICTURES:
+        raise ValueError(f"--figure must end in one of {', '.join(_PICTURES)}, got {str(figure)!r}")
+    for option, file in (("--out", out), ("--figure", figure)):
+        if file and (file.is_dir() or not file.parent.is_dir()):
+            raise ValueError(f"{option} must be a file in a folder that exists, got {str(file)!r}")
+
+
+def _hills(hill: Hill, integrator: str | None) -> list[Hill]:
+    if integrator is not None:
+        return [hill._replace(integrator=Integrator(integrator))]  # type: ignore[arg-type]  # takes names
+    return [hill, *(hill._replace(integrator=other) for other in Integrator if other != hill.integrator)]
 
 
 def _walks(

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from arena.pool import imap
 from envs.checks import integer
 from envs.streams import stream
 
@@ -125,13 +126,14 @@ FAMILIES = (
 )
 
 
-def fit_all(lengths: ArrayLike, seed: int = 0, bootstraps: int = BOOTSTRAPS) -> list[Fit]:
+def fit_all(lengths: ArrayLike, seed: int = 0, bootstraps: int = BOOTSTRAPS, n_jobs: int = 1) -> list[Fit]:
     """All families fitted to the lengths, the least AIC first.
 
     Args:
         lengths: positive, shape (n,), at least two different ones.
         seed: of the bootstrap, at least 0; each family has a stream of its own.
         bootstraps: samples, at least 1.
+        n_jobs: workers, as joblib counts them; they change no bit.
 
     Raises:
         TypeError, ValueError: when an argument breaks its rule.
@@ -142,7 +144,8 @@ def fit_all(lengths: ArrayLike, seed: int = 0, bootstraps: int = BOOTSTRAPS) -> 
             f"lengths must be positive numbers of which at least two differ, got {np.unique(x)[:3].tolist()}"
         )
     seed, bootstraps = integer("seed", seed, 0), integer("bootstraps", bootstraps, 1)
-    return sorted((_fit(family, x, seed, bootstraps) for family in FAMILIES), key=lambda fit: fit.aic)
+    tasks = [(family, x, seed, bootstraps) for family in FAMILIES]
+    return sorted(imap(n_jobs, _fit, tasks), key=lambda fit: fit.aic)
 
 
 def _fit(family: Family, x: Floats, seed: int, bootstraps: int) -> Fit:

@@ -57,6 +57,9 @@ PAPER = Summary(
 )
 """What the paper reports (section 3.2)."""
 
+PAPER_SECONDS = 1057.793
+"""What its walks took (section 3.2)."""
+
 
 def summarize(walk: RandomWalk) -> Summary:
     """The numbers of at least one finished episode."""
@@ -81,7 +84,8 @@ class WalkStudy:
     Attributes:
         walks: the first is the one that the fits are of.
         summaries: of each.
-        fits: of all families, the best first; none if an episode was given up or all are of one length.
+        fits: of all families, the best first; none if none were asked for, if an episode was given up, or
+            if all are of one length.
     """
 
     walks: tuple[RandomWalk, ...]
@@ -113,17 +117,18 @@ class WalkStudy:
         }
 
 
-def study(walks: Sequence[RandomWalk], bootstraps: int = BOOTSTRAPS) -> WalkStudy:
+def study(walks: Sequence[RandomWalk], bootstraps: int = BOOTSTRAPS, n_jobs: int = 1) -> WalkStudy:
     """Summaries of the walks, and fits to the lengths of the first.
 
     Args:
         walks: at least one, with at least one finished episode each.
-        bootstraps: samples for each p-value, at least 1.
+        bootstraps: samples for each p-value; for 0 nothing is fitted.
+        n_jobs: workers, as joblib counts them; they change no bit.
     """
     first = walks[0]
     fits: Sequence[Fit] = ()
-    if first.reached.all() and first.lengths.min() < first.lengths.max():
-        fits = fit_all(first.lengths, first.seed, bootstraps)
+    if bootstraps and first.reached.all() and first.lengths.min() < first.lengths.max():
+        fits = fit_all(first.lengths, first.seed, bootstraps, n_jobs)
     return WalkStudy(tuple(walks), tuple(map(summarize, walks)), tuple(fits))
 
 

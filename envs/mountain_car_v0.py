@@ -13,13 +13,14 @@ from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from gymnasium import spaces
+from gymnasium import logger, spaces
 from numpy.typing import NDArray
 from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 
-from envs.checks import instance, integer, number
+from envs.checks import choice, instance, integer, number
 from envs.hill import Hill, State
+from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Image, Window, picture, text
 from envs.streams import stream
 
 __all__ = ["env", "parallel_env", "raw_env"]
@@ -45,7 +46,8 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         hill: the hill that each of them drives on.
         max_steps: a car that has not reached the goal after so many steps is truncated.
         same_start: whether all cars of an episode start at one position.
-        render_mode: None; the environment draws no pictures yet.
+        render_mode: None, ``"ansi"`` (text), ``"rgb_array"`` (pictures) or ``"human"`` (a window, which
+            follows every step; needs pygame).
         max_cycles: PettingZoo's usual name for ``max_steps``; overrides it.
 
     Each car's starts come from a random stream of its own, which belongs to its name: a car's
@@ -57,7 +59,8 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
 
     metadata: ClassVar[dict[str, Any]] = {
         "name": "mountain_car_v0",
-        "render_modes": [],
+        "render_modes": list(RENDER_MODES),
+        "render_fps": FRAMES_PER_SECOND,
         "is_parallelizable": True,
     }
 
@@ -72,7 +75,7 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         max_cycles: int | None = None,
     ) -> None:
         if render_mode is not None:
-            raise ValueError(f"render_mode must be None, got {render_mode!r}")
+            choice("render_mode", render_mode, RENDER_MODES)
         self.possible_agents = _names(cars)
         self.agents: list[str] = []
         self.hill = instance("hill", hill, Hill)
@@ -87,6 +90,12 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         self._states: dict[str, State] = {}
         self._streams: dict[str, np.random.Generator] = {}
         self._steps = 0
+        self._window: Window | None = None
+        self.state_space = spaces.Box(
+            np.tile(low, len(self.possible_agents)),
+            np.tile(high, len(self.possible_agents)),
+            dtype=np.float64,
+        )
 
     def observation_space(self, agent: str) -> spaces.Space[Observation]:
         """The box of the car's position and velocity."""
@@ -119,6 +128,7 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
                 car: given[car] if car in given else self.hill.reset(self._streams[car])
                 for car in self.agents
             }
+        self._follow()
         return self._observe(), {car: {} for car in self.agents}
 
     def step(
@@ -148,13 +158,49 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         truncations = {car: late and not terminations[car] for car in cars}
         observations = self._observe()
         self.agents = [car for car in cars if not (late or terminations[car])]
+        self._follow()
         return observations, rewards, terminations, truncations, {car: {} for car in cars}
 
-    def render(self) -> None:
-        """Draw nothing: there is no render mode yet."""
+    def state(self) -> Observation:
+        """Position and velocity of each of ``possible_agents`` in turn; shape (2 * cars,).
+
+        Those of a car that has ended are its last ones.
+
+        Raises:
+            ValueError: before the first reset.
+        """
+        if not self._states:
+            raise ValueError("state is there after the first reset, not before")
+        return np.array([self._states[car] for car in self.possible_agents]).ravel()
+
+    def render(self) -> Image | str | None:
+        """What the cars are doing, in the render mode: a picture, a text, or None."""
+        if self.render_mode is None:
+            logger.warn("render is called without a render_mode; give one to parallel_env")
+            return None
+        if self.render_mode == "ansi":
+            return text(self._states, self._steps)
+        image = picture(self.hill, self._states, self._steps)
+        if self.render_mode == "rgb_array":
+            return image
+        self._window = self._window or Window(self.metadata["name"])
+        self._window.show(image)
+        return None
 
     def close(self) -> None:
-        """Release nothing: the environment holds no resources."""
+        """Close the window, if there is one."""
+        if self._window:
+            self._window.close()
+            self._window = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the window: a copy is in the middle of the same episode, and opens its own."""
+        return self.__dict__ | {"_window": None}
+
+    def _follow(self) -> None:
+        """Keep the window up to date."""
+        if self.render_mode == "human":
+            self.render()
 
     def _observe(self) -> dict[str, Observation]:
         return {car: np.array(self.hill.observe(self._states[car])) for car in self.agents}

@@ -238,7 +238,7 @@ def test_bad_action_is_refused_by_the_cars_name_and_nothing_moves(bad: Any) -> N
     ("error", "name", "bad"),
     [(ValueError, "cars", bad) for bad in (0, [], ["a", "a"], ["a", ""], ["a", 1])]
     + [(TypeError, "cars", bad) for bad in (1.5, True, "car_0", None)]
-    + [(ValueError, "max_steps", 0), (TypeError, "max_steps", 1.5), (ValueError, "render_mode", "human")],
+    + [(ValueError, "max_steps", 0), (TypeError, "max_steps", 1.5), (ValueError, "render_mode", "film")],
 )
 def test_bad_argument_is_refused_by_name_and_value(error: type[Exception], name: str, bad: Any) -> None:
     with pytest.raises(error, match=rf"^{name} must .*, got {re.escape(repr(bad))}$"):

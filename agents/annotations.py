@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal
 
-from agents import bounds as limits
+from agents.bounds import NUMBERS, check_bounds, in_words, is_bound, split, within
 from agents.hints import type_hints
 from envs.checks import choice, integer, number
 
@@ -23,9 +23,9 @@ def settle(name: str, value: Any, annotation: Any) -> Any:
     Raises:
         TypeError, ValueError: when it breaks the annotation's rule.
     """
-    base, bounds = limits.split(annotation)
+    base, bounds = split(annotation)
     origin, arguments = _parts(base, bounds)
-    limits.check(name, arguments if origin in _UNIONS else (base,), bounds)
+    check_bounds(name, arguments if origin in _UNIONS else (base,), bounds)
     if origin in _UNIONS:
         return _settle_union(name, value, arguments)
     if origin is Literal:
@@ -35,13 +35,13 @@ def settle(name: str, value: Any, annotation: Any) -> Any:
     if _is_sequence(origin):
         return _settle_sequence(name, value, arguments, fixed=origin is tuple)
     if base in _PLAIN:
-        return limits.within(name, _PLAIN[base](name, value), bounds)
+        return within(name, _PLAIN[base](name, value), bounds)
     return _settle_instance(name, value, base)
 
 
 def rule(annotation: Any) -> str:
     """Type and bounds in words, such as ``float in [0, 1]``."""
-    base, bounds = limits.split(annotation)
+    base, bounds = split(annotation)
     origin, arguments = _parts(base, bounds)
     if origin in _UNIONS:
         return " or ".join(map(rule, arguments))
@@ -53,8 +53,8 @@ def rule(annotation: Any) -> str:
     if base in (Any, None, NoneType):
         return "anything" if base is Any else "nothing"
     name = getattr(base, "__name__", str(base))
-    known = [bound for bound in bounds if isinstance(bound, limits.BOUNDS) and base in limits.NUMBERS]
-    return f"{name} {limits.in_words(known)}" if known else name
+    known = [bound for bound in bounds if is_bound(bound) and base in NUMBERS]
+    return f"{name} {in_words(known)}" if known else name
 
 
 def as_tuples(value: Any) -> Any:
@@ -101,7 +101,7 @@ def _settle_literal(name: str, value: Any, options: tuple[Any, ...]) -> Any:
 
 
 def _settle_union(name: str, value: Any, members: tuple[Any, ...]) -> Any:
-    bases = [limits.split(member)[0] for member in members]
+    bases = [split(member)[0] for member in members]
     kinds = [kind for kind in (typing.get_origin(base) or base for base in bases) if _is_named_tuple(kind)]
     if kinds and isinstance(value, Mapping):  # a table of a file: the kind that it has most fields of
         _check_fields(name, value, {field for kind in kinds for field in kind._fields})
@@ -187,7 +187,5 @@ def _parts(base: Any, bounds: list[Any]) -> tuple[Any, tuple[Any, ...]]:
     if base in (tuple, list, Sequence):
         return base, ()
     if origin in _UNIONS and bounds:
-        arguments = tuple(
-            Annotated[one, *bounds] if limits.split(one)[0] in limits.NUMBERS else one for one in arguments
-        )
+        arguments = tuple(Annotated[one, *bounds] if split(one)[0] in NUMBERS else one for one in arguments)
     return origin, arguments

@@ -6,8 +6,13 @@ from typing import Annotated, Any
 
 from annotated_types import BaseMetadata, Ge, GroupedMetadata, Gt, Le, Lt
 
-BOUNDS = (Ge, Gt, Le, Lt)
+_KINDS = (Ge, Gt, Le, Lt)
 NUMBERS = (int, float)
+
+
+def is_bound(one: Any) -> bool:
+    """Whether it is a bound that is looked at."""
+    return isinstance(one, _KINDS)
 
 
 def split(annotation: Any) -> tuple[Any, list[Any]]:
@@ -20,7 +25,7 @@ def split(annotation: Any) -> tuple[Any, list[Any]]:
     return base, bounds + [one for one in _flat(metadata) if isinstance(one, BaseMetadata)]  # no notes
 
 
-def check(name: str, members: Sequence[Any], bounds: list[Any]) -> None:
+def check_bounds(name: str, members: Sequence[Any], bounds: list[Any]) -> None:
     """A bound that is not looked at would be worse than none.
 
     Raises:
@@ -28,8 +33,8 @@ def check(name: str, members: Sequence[Any], bounds: list[Any]) -> None:
     """
     numeric = any(split(one)[0] in NUMBERS for one in members)
     for bound in bounds:
-        if not isinstance(bound, BOUNDS) or not numeric:
-            known = ", ".join(one.__name__ for one in BOUNDS)
+        if not is_bound(bound) or not numeric:
+            known = ", ".join(one.__name__ for one in _KINDS)
             raise TypeError(f"{name} must be a number with bounds {known} or Interval, got {bound!r}")
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from agents import agent_name
 from agents.parameters import settle_all
 from agents.registry import check_methods
-from arena.freshness import check_fresh, code_digest
+from arena.freshness import check_fresh, code_of
 from arena.plugins import PluginSource, source_of
 from arena.unavailable import Unavailable
 
@@ -36,7 +36,7 @@ class Entrant:
     agent: type[Any]
     parameters: Mapping[str, Any] = field(hash=False)
     given: frozenset[str] = field(compare=False)
-    _code: str = field(compare=False, repr=False)
+    _code: Mapping[str, str] = field(compare=False, repr=False)
 
     def __init__(self, name: str, agent: type[Any], /, **parameters: Any) -> None:
         if not isinstance(name, str) or not name.strip() or not name.isprintable():
@@ -52,12 +52,13 @@ class Entrant:
             raise ValueError(f"entrant {name!r}: {error}") from error
         object.__setattr__(self, "parameters", complete)
         object.__setattr__(self, "given", frozenset(parameters))
-        object.__setattr__(self, "_code", code_digest(agent))
+        code_of(agent)  # what is edited from now on is not what this process has imported
+        object.__setattr__(self, "_code", {})
 
     def __reduce__(self) -> tuple[Any, ...]:
         classes = (self.agent, *map(type, self.parameters.values()))
         parts = (self.name, self.agent, dict(self.parameters), self.given)
-        return _revive, (source_of(*classes), *parts, code_digest(self.agent))
+        return _revive, (source_of(*classes), *parts, code_of(self.agent))
 
     def create(self, task: Any, rng: np.random.Generator) -> Any:
         """The agent, before it has learned anything.
@@ -124,7 +125,7 @@ def _revive(
     agent: type[Any],
     parameters: dict[str, Any],
     given: frozenset[str],
-    code: str,
+    code: Mapping[str, str],
 ) -> Entrant:
     """What was pickled; the plugins come first, so that the classes of the rest are found."""
     entrant = object.__new__(Entrant)

@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -235,6 +236,13 @@ def test_classes_of_a_script_get_the_same_bits_as_those_of_a_file() -> None:
     assert bits(load("r.sqlite")) == expected
 
 
+NOTEBOOK = """
+import json, pathlib, sys
+for number, cell in enumerate(json.loads(pathlib.Path("cells.json").read_text())):
+    exec(compile(cell, f"<cell {number}>", "exec"), vars(sys.modules["__main__"]))
+"""
+
+
 @pytest.mark.slow
 def test_cells_of_a_notebook_that_are_run_again_get_the_bits_of_the_new_code() -> None:
     cells, expected = [], {}
@@ -243,11 +251,7 @@ def test_cells_of_a_notebook_that_are_run_again_get_the_bits_of_the_new_code() -
         expected[f"{number}.sqlite"] = from_file()
         cells += [PLUGIN.replace(*edit), f"out = '{number}.sqlite'", RUN_IT]
     Path("cells.json").write_text(json.dumps(cells))
-    Path("notebook.py").write_text(
-        "import json, pathlib, sys\n"
-        "for number, cell in enumerate(json.loads(pathlib.Path('cells.json').read_text())):\n"
-        "    exec(compile(cell, f'<cell {number}>', 'exec'), vars(sys.modules['__main__']))\n"
-    )
+    Path("notebook.py").write_text(NOTEBOOK)
     done = python("notebook.py")
     assert done.returncode == 0, done.stderr
     assert {name: bits(load(name)) for name in expected} == expected
@@ -317,8 +321,9 @@ class Library:
     def write(self, module: str, text: str) -> None:
         (self.folder / f"{module}.py").write_text(text)
 
-    def race(self, n_jobs: int = 2) -> Results:
-        return run(race_of(speedy=self.agents.Speedy, plodding=self.agents.Plodding), n_jobs=n_jobs)
+    def race(self, n_jobs: int = 2, driver: str = "auto") -> Results:
+        tournament = race_of(speedy=self.agents.Speedy, plodding=self.agents.Plodding)
+        return run(tournament, n_jobs=n_jobs, driver=driver)
 
 
 @pytest.fixture
@@ -329,7 +334,7 @@ def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Library
     monkeypatch.syspath_prepend(str(tmp_path))  # workers get the path of when they start
     new_workers()
     yield Library(tmp_path)
-    for name in ("library_agents", "library_helper"):
+    for name in ("library_agents", "library_helper", "library_constants"):
         sys.modules.pop(name, None)
     new_workers()  # those that are left have a path to a folder that will be gone
 
@@ -359,6 +364,9 @@ def test_a_helper_that_is_reloaded_runs_its_new_code_on_warm_workers(library: Li
         runs = {one["entrant"]: one for one in results.runs}
         assert runs["plodding"]["status"] == "finished"
         assert "was edited after it was imported" in runs["speedy"]["error"]
+        told = results.arrays("plodding")["memory"].tolist()
+    with library.race(n_jobs=1) as results:
+        assert results.arrays("plodding")["memory"].tolist() == told
     importlib.reload(library.agents)
     after = bits(library.race())
     assert after != before
@@ -380,6 +388,56 @@ def test_a_module_that_is_edited_but_not_reloaded_fails_on_new_workers_and_says_
             )
     importlib.reload(library.agents)
     assert bits(library.race()) != before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("driver", ["auto", "pettingzoo"])
+def test_a_helper_that_is_edited_but_not_reloaded_fails_on_new_workers_and_says_so(
+    library: Library, driver: str
+) -> None:
+    library.write("library_helper", "from library_constants import *\n\ndef share():\n    return SHARE\n")
+    library.write("library_constants", "SHARE = 0.25\n")
+    importlib.invalidate_caches()
+    importlib.reload(sys.modules["library_helper"])
+    before = bits(library.race(driver=driver))
+    library.write("library_constants", "SHARE = 12.5\n")
+    new_workers()
+    with library.race(driver=driver) as results:
+        last = {one["error"].strip().splitlines()[-1] for one in results.runs}
+    told = "RuntimeError: the code of library_constants was edited after it was imported"
+    assert last == {f"{told}: reload the module, or start anew"}
+    assert bits(library.race(n_jobs=1, driver=driver)) == before  # what this process has imported
+    for name in ("library_constants", "library_helper", "library_agents"):
+        importlib.reload(sys.modules[name])
+    after = bits(library.race(driver=driver))
+    assert after != before
+    assert bits(library.race(n_jobs=1, driver=driver)) == after
+
+
+@pytest.mark.slow
+def test_a_helper_of_a_notebook_that_is_edited_but_not_reloaded_is_told(library: Library) -> None:
+    library.write("library_helper", "def share():\n    return 0.25\n")
+    cells = [
+        "import sys\nsys.dont_write_bytecode = True\n" + library.text,
+        f"out = 'before.sqlite'\n{RUN_IT}",
+        "pathlib.Path('library_helper.py').write_text('def share():\\n    return 12.5\\n')",
+        "from joblib.externals.loky import get_reusable_executor as workers\nworkers().shutdown(wait=True)",
+        f"out = 'after.sqlite'\n{RUN_IT}",
+    ]
+    Path("cells.json").write_text(json.dumps(cells))
+    Path("notebook.py").write_text(NOTEBOOK)
+    done = python("notebook.py")
+    assert done.returncode == 0, done.stderr
+    assert bits(load("before.sqlite"))
+    with load("after.sqlite") as results:
+        errors = {one["entrant"]: one.get("error", "") for one in results.runs}
+    assert "the code of library_helper was edited after it was imported" in errors["plodding"]
+
+
+def test_a_class_that_a_function_makes_travels(library: Library) -> None:
+    library.write("library_agents", f"def make():\n{textwrap.indent(DRIVER, '    ')}\n    return Driver\n")
+    importlib.reload(library.agents)
+    assert bits(run(race_of(driver=library.agents.make()), n_jobs=2))
 
 
 # Mistakes

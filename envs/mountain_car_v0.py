@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 
-from envs.checks import choice, instance, integer, number
+from envs.checks import choice, instance, integer
 from envs.hill import Hill, State
 from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Image, Window, picture, text
+from envs.starts import checked_state
 from envs.streams import stream
 
 __all__ = ["env", "parallel_env", "raw_env"]
@@ -226,16 +227,7 @@ def _names(cars: int | Iterable[str]) -> list[str]:
 def _starts(hill: Hill, starts: Any, cars: list[str]) -> dict[str, State]:
     if not isinstance(starts, Mapping) or not starts.keys() <= set(cars):
         raise ValueError(f"start must give cars of {cars}, got {starts!r}")
-    checked = {}
-    for car, state in starts.items():
-        if not isinstance(state, Iterable) or len(pair := tuple(state)) != 2:
-            raise ValueError(f"start of {car} must be (position, velocity), got {state!r}")
-        position, velocity = pair
-        checked[car] = (
-            number(f"start position of {car}", position, hill.min_position, hill.goal_position),
-            number(f"start velocity of {car}", velocity, hill.min_velocity, hill.max_velocity),
-        )
-    return checked
+    return {car: checked_state(hill, state, f" of {car}") for car, state in starts.items()}
 
 
 def _action(actions: Mapping[str, int], car: str, n_actions: int) -> int:

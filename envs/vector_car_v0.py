@@ -1,0 +1,210 @@
+"""Thousands of cars for Gymnasium, stepped by one compiled loop.
+
+``gymnasium.make_vec("envs:arena/MountainCar-v0", num_envs=4096)`` does what
+``gymnasium.vector.SyncVectorEnv`` does with as many single cars, to the bit, for the same seed and in each
+autoreset mode.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium import logger, spaces
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from envs.checks import choice, instance, integer
+from envs.compilation import entry_point
+from envs.hill import Hill
+from envs.rendering import FRAMES_PER_SECOND, Image, picture
+from envs.starts import start_state
+
+__all__ = ["VectorCarEnv"]
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Observations = NDArray[np.float32]
+
+
+class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
+    """Independent cars on one hill; each starts anew when it has ended.
+
+    Args:
+        num_envs: how many cars.
+        hill: what they drive on.
+        max_episode_steps: a car that has not reached the goal after so many steps is truncated.
+        render_mode: None or ``"rgb_array"``: one picture with all cars.
+        autoreset_mode: when a car that has ended starts anew: in the next step, which then ignores its
+            action (``"NextStep"``); in the same step, with the last observation in
+            ``info["final_obs"]`` (``"SameStep"``); or never (``"Disabled"``): the caller resets with
+            ``options={"reset_mask": mask}``.
+
+    Raises:
+        TypeError, ValueError: when an argument breaks its rule.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        hill: Hill = Hill(),  # noqa: B008 (immutable)
+        max_episode_steps: int = 200,
+        render_mode: str | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+    ) -> None:
+        self.num_envs = integer("num_envs", num_envs, 1)
+        self.hill = instance("hill", hill, Hill)
+        self.max_episode_steps = integer("max_episode_steps", max_episode_steps, 1)
+        if render_mode is not None:
+            choice("render_mode", render_mode, ("rgb_array",))
+        self.render_mode = render_mode
+        modes = {mode.value: mode for mode in AutoresetMode}
+        name = autoreset_mode.value if isinstance(autoreset_mode, AutoresetMode) else autoreset_mode
+        self.autoreset_mode = modes[choice("autoreset_mode", name, modes)]
+        self.metadata = {
+            "render_modes": ["rgb_array"],
+            "render_fps": FRAMES_PER_SECOND,
+            "autoreset_mode": self.autoreset_mode,
+        }
+        low, high = np.array(hill.low, np.float32), np.array(hill.high, np.float32)
+        self.single_observation_space = spaces.Box(low, high, dtype=np.float32)
+        self.single_action_space = spaces.Discrete(hill.n_actions)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._states: Floats = np.full((num_envs, 2), np.nan)
+        self._steps = np.zeros(num_envs, np.int64)
+        self._ended = np.zeros(num_envs, np.bool_)
+        self._streams: list[np.random.Generator | None] = [None] * num_envs
+        self._loop: Callable[..., Any] | None = None
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: Mapping[str, Any] | None = None,
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Put cars at a start.
+
+        Args:
+            seed: of the first car, the next ones have the numbers after it; or one for each car. Without
+                it the streams go on.
+            options: as of the single car; ``reset_mask``, bool, shape (num_envs,), says which cars are
+                meant, all if it is left out.
+
+        Raises:
+            TypeError, ValueError: when an argument breaks its rule.
+        """
+        rest = dict(options or {})
+        mask = _checked_mask(rest.pop("reset_mask", None), self.num_envs)
+        if seed is None or isinstance(seed, (int, np.integer)):
+            seeds = [None if seed is None else int(seed) + car for car in range(self.num_envs)]
+        elif len(seed) == self.num_envs:
+            seeds = list(seed)
+        else:
+            raise ValueError(f"seed must be a number or {self.num_envs} of them, got {seed!r}")
+        for car in np.flatnonzero(mask):
+            if seeds[car] is not None:
+                self._streams[car] = seeding.np_random(seeds[car])[0]
+            self._start(int(car), rest)
+        return self._states.astype(np.float32), {}
+
+    def step(self, actions: NDArray[np.int64]) -> tuple[Observations, Floats, Flags, Flags, dict[str, Any]]:
+        """Drive each car one step.
+
+        Args:
+            actions: 0, 1 or 2 for each car, shape (num_envs,).
+
+        Raises:
+            TypeError, ValueError: when the actions are not such, before the first reset, or, with
+                autoreset disabled, when a car that has ended was not reset.
+        """
+        chosen = _checked_actions(actions, self.num_envs, self.hill.n_actions)
+        if np.isnan(self._states).any():
+            raise ValueError("reset must be called before step")
+        anew = self._ended
+        if self.autoreset_mode == AutoresetMode.DISABLED and anew.any():
+            raise ValueError(f"cars that have ended must be reset, got a step of {np.flatnonzero(anew)}")
+        rewards = np.zeros(self.num_envs)
+        terminated = np.zeros(self.num_envs, np.bool_)
+        arguments = (self.hill, self._states, chosen, anew, rewards, terminated)
+        self._loop = self._loop or entry_point(advance, *arguments)
+        self._loop(*arguments)
+        self._steps += ~anew
+        truncated = (self._steps >= self.max_episode_steps) & ~anew
+        info: dict[str, Any] = {}
+        for car in np.flatnonzero(anew):
+            self._start(int(car), {})
+        self._ended = terminated | truncated
+        if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
+            info = self._start_ended()
+        return self._states.astype(np.float32), rewards, terminated, truncated, info
+
+    def render(self) -> tuple[Image, ...] | None:
+        """One picture with all cars, as a tuple of one."""
+        if self.render_mode is None:
+            logger.warn("render is called without a render_mode; give one to gymnasium.make_vec")
+            return None
+        cars = {f"car {car}": (x, v) for car, (x, v) in enumerate(self._states.tolist())}
+        return (picture(self.hill, cars, int(self._steps.max())),)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the machine code, which a copy loads anew."""
+        return self.__dict__ | {"_loop": None}
+
+    def _start_ended(self) -> dict[str, Any]:
+        """Let the cars that have ended start anew; their last observations, as Gymnasium tells them."""
+        final, ended = np.full(self.num_envs, None, object), self._ended.copy()
+        for car in np.flatnonzero(ended):
+            final[car] = self._states[car].astype(np.float32)
+            self._start(int(car), {})
+        return {"final_obs": final, "_final_obs": ended, "final_info": {}, "_final_info": ended.copy()}
+
+    def _start(self, car: int, options: Mapping[str, Any]) -> None:
+        stream = self._streams[car]
+        if stream is None:
+            stream = self._streams[car] = seeding.np_random()[0]
+        self._states[car] = start_state(self.hill, stream, options)
+        self._steps[car], self._ended[car] = 0, False
+
+
+def advance(
+    hill: Hill,
+    states: Floats,
+    actions: NDArray[np.int64],
+    anew: Flags,
+    rewards: Floats,
+    terminated: Flags,
+) -> None:
+    """One step of each car but those that start anew.
+
+    Args:
+        hill: what they drive on.
+        states: changed in place, shape (cars, 2).
+        actions: shape (cars,).
+        anew: whose action is ignored, shape (cars,).
+        rewards: filled, 0 for those; shape (cars,).
+        terminated: filled, shape (cars,).
+    """
+    for car in range(states.shape[0]):
+        if not anew[car]:
+            state = (states[car, 0], states[car, 1])
+            state, rewards[car], terminated[car] = hill.step(state, actions[car])
+            states[car, 0], states[car, 1] = state
+
+
+def _checked_mask(mask: Any, count: int) -> Flags:
+    if mask is None:
+        return np.ones(count, np.bool_)
+    if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (count,) or not mask.any():
+        raise ValueError(f"reset_mask must be a bool array of shape ({count},) with a True, got {mask!r}")
+    return mask
+
+
+def _checked_actions(actions: Any, count: int, n_actions: int) -> NDArray[np.int64]:
+    chosen = np.asarray(actions)
+    if chosen.shape != (count,) or chosen.dtype.kind not in "iu":
+        raise ValueError(f"actions must be integers of shape ({count},), got {actions!r}")
+    if chosen.min() < 0 or chosen.max() >= n_actions:
+        raise ValueError(f"actions must be at least 0 and less than {n_actions}, got {actions!r}")
+    return chosen.astype(np.int64, copy=False)

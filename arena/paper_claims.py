@@ -23,6 +23,7 @@ from arena.verdicts import (
     number_claim,
     untestable_claim,
 )
+from arena.walk_study import PAPER, PAPER_SECONDS, REASONABLE
 from arena.walks import RandomWalk
 
 WALKS = 2000  # of a series
@@ -59,27 +60,27 @@ def _walk_claims(walks: Sequence[RandomWalk]) -> Iterator[Claim]:
     lengths = np.array([walk.lengths for walk in walks], dtype=float)
     bounds = np.array([(*walk.velocity, *walk.position) for walk in walks]).T
     for statement, paper, sample in (
-        ("least length of a random walk", 865, lengths.min(axis=1)),
-        ("greatest length", 324_776, lengths.max(axis=1)),
-        ("mean length", 42_209.101, lengths.mean(axis=1)),
-        ("standard deviation of the lengths", 37_989.213, lengths.std(axis=1)),
-        ("least velocity", -0.06587993, bounds[0]),
-        ("greatest velocity", 0.05977063, bounds[1]),
-        ("least position", -1.2, bounds[2]),
-        ("greatest position", 0.52564615, bounds[3]),
+        ("least length of a random walk", PAPER.least, lengths.min(axis=1)),
+        ("greatest length", PAPER.most, lengths.max(axis=1)),
+        ("mean length", PAPER.mean, lengths.mean(axis=1)),
+        ("standard deviation of the lengths", PAPER.deviation, lengths.std(axis=1)),
+        ("least velocity", PAPER.velocity[0], bounds[0]),
+        ("greatest velocity", PAPER.velocity[1], bounds[1]),
+        ("least position", PAPER.position[0], bounds[2]),
+        ("greatest position", PAPER.position[1], bounds[3]),
     ):
         yield number_claim("3.2", statement, paper, sample)
-    below = 100.0 * (lengths < 30_000).mean(axis=1)
+    below = 100.0 * (lengths < REASONABLE).mean(axis=1)
     yield measured_claim(
         "3.2",
-        "more than 50% of the walks take less than 30,000 steps",
+        f"more than 50% of the walks take less than {REASONABLE:,} steps",
         50.0,
         below,
         reproduced=bool(np.mean(below > 50.0) > _TAIL),
         note="percent that do; reproduced if it is more than 50 in more than 2.5% of our series",
     )
     why = "of the paper's machine and program"
-    yield untestable_claim("3.2", "seconds for 2,000 walks", 1057.793, [], why)
+    yield untestable_claim("3.2", f"seconds for {PAPER.episodes:,} walks", PAPER_SECONDS, [], why)
 
 
 def _cell_claims(tables: dict[str, Floats]) -> Iterator[Claim]:

@@ -33,10 +33,11 @@ Check = Callable[[Entrant], None]
 
 
 def check_same_seed_same_bits(entrant: Entrant) -> None:
-    """Two runs with the same seed leave the same bits, whatever happened between them."""
-    first = _race(entrant)
+    """Two runs with the same seed do the same and leave the same bits, whatever happened between them."""
+    first, actions = _race(entrant), _actions(entrant)
     _race(entrant, seed=8)  # a trace left in the class, or anywhere, would show in the next
     _same(first, _race(entrant), "a second run with the same seed")
+    _hold(actions == _actions(entrant), "a second run with the same seed chooses other actions")
 
 
 def check_compiled_is_interpreted(entrant: Entrant) -> None:
@@ -164,7 +165,18 @@ def _create(entrant: Entrant, seed: int = 7) -> Any:
 
 def _trained(entrant: Entrant) -> Any:
     """An agent after a few hundred steps."""
-    agent, rng = _create(entrant), np.random.default_rng(5)
+    return _drive(entrant)[0]
+
+
+def _actions(entrant: Entrant) -> list[int]:
+    """What it does in a few hundred steps, and would do there afterwards: not all of it leaves bits."""
+    agent, steps = _drive(entrant)
+    return [action for _, action in steps] + [agent.greedy(observation) for observation, _ in steps]
+
+
+def _drive(entrant: Entrant) -> tuple[Any, list[tuple[Any, int]]]:
+    """An agent after a few hundred steps, with what it saw and did."""
+    agent, rng, steps = _create(entrant), np.random.default_rng(5), []
     for _ in range(3):
         state = _HILL.reset(rng)
         listener(agent).begin_episode()
@@ -175,10 +187,11 @@ def _trained(entrant: Entrant) -> Any:
             after = np.array(_HILL.observe(state))
             following = agent.act(after, 0.5, rng)
             agent.learn(before, action, reward, after, following, terminated)
+            steps.append((before, action))
             action = following
             if terminated:
                 break
-    return agent
+    return agent, steps
 
 
 def _observations() -> Iterator[Any]:

@@ -15,6 +15,7 @@ from hand_made_agents import Leaky, Scripted, Uncompilable
 from numpy.typing import NDArray
 
 from agents import registry
+from agents.references import DoesNotLearn
 from agents.registry import all_agents
 from arena import Entrant
 from arena.cli import main
@@ -227,6 +228,29 @@ class DrawsOtherwiseWhenMade(Good):
         self.values[action] += 1.0
 
 
+class SharesADictionary(DoesNotLearn):
+    """What one agent has seen, the next one knows; no array shows it."""
+
+    seen: dict[float, bool] = {}  # noqa: RUF012 (on purpose)
+
+    def greedy(self, observation: Any) -> int:
+        self.seen[float(observation[0])] = True
+        return len(self.seen) % 2
+
+
+class DrawsAnywhere(DoesNotLearn):
+    """Its generator begins anywhere; no array shows it."""
+
+    def __init__(self) -> None:
+        self.rng = np.random.default_rng()
+
+    def act(self, observation: Any, progress: float, rng: np.random.Generator) -> int:
+        return int(self.rng.integers(3))
+
+    def greedy(self, observation: Any) -> int:
+        return 1
+
+
 class HoldsALock(Good):
     __slots__ = ()
 
@@ -369,6 +393,8 @@ BAD: dict[type, dict[str, str]] = {  # each with all that is found, as a pattern
         "travels": f"a run of its copy {OTHER_BITS}",
         "compiled is interpreted": f"the compiled run {OTHER_BITS}",
     },
+    SharesADictionary: {"same seed same bits": "a second run with the same seed chooses other actions"},
+    DrawsAnywhere: {"same seed same bits": "a second run with the same seed chooses other actions"},
     HoldsALock: {"travels": r"TypeError: cannot pickle '_thread\.lock' object"},
     KeepsWhatCannotBeSaved: {"saves and loads": r"greedy\(\[.*\]\) differs after saving and loading"},
     DrawsNumbersByHand: {"compiled is interpreted": f"the compiled run {OTHER_BITS}"},

@@ -17,6 +17,7 @@ from arena.builtin import BUILT_IN
 from arena.cli_agents import Plugins, add_commands, load_plugins
 from arena.cli_curves import add_commands as add_curves_command
 from arena.cli_paper import add_commands as add_paper_command
+from arena.cli_plot import add_commands as add_plot_command
 from arena.cli_results import add_commands as add_result_commands
 from arena.cli_results import print_results
 from arena.cli_walk import add_commands as add_walk_command
@@ -35,6 +36,7 @@ app = typer.Typer(
 
 add_commands(app)
 add_result_commands(app)
+add_plot_command(app)
 add_curves_command(app)
 add_paper_command(app)
 add_walk_command(app)

@@ -1,0 +1,170 @@
+"""The command ``arena plot``: a results file as pictures."""
+
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from arena.cli_results import By, File
+from arena.results import Results, load
+from envs.checks import choice
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from arena.leaderboard import Leaderboard
+
+SUFFIXES = (".png", ".svg", ".pdf")
+_SOME = 5  # entrants of a picture of lines, unless they are named
+
+
+class Kind(StrEnum):
+    """Choices of KIND."""
+
+    LEARNING = "learning"
+    POLICY = "policy"
+    VISITS = "visits"
+    VALUE = "value"
+    PHASE = "phase"
+    REGRET = "regret"
+    SWEEP = "sweep"
+    INTERVALS = "intervals"
+    RANKS = "ranks"
+    PAIRS = "pairs"
+
+
+def plot(
+    file: File,
+    kind: Annotated[Kind, typer.Argument(help="What is drawn.", metavar="|".join(Kind))],
+    entrant: Annotated[
+        list[str] | None,
+        typer.Option(help="Who is drawn, may be repeated; by default the best by steps.", metavar="NAME"),
+    ] = None,
+    replicate: Annotated[int, typer.Option(help="Whose policy or test drives.", metavar="R")] = 0,
+    by: Annotated[By, typer.Option(help="The score of intervals, ranks and pairs.")] = By.STEPS,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", help="File that ends in .png, .svg or .pdf; by default KIND.png.", metavar="FILE"
+        ),
+    ] = None,
+) -> None:
+    """Draw a figure of the paper, or one beyond it, from a results file."""
+    out = out or Path(f"{kind.value}.png")
+    choice("suffix of --out", out.suffix.lower(), SUFFIXES)
+    with load(file) as results:
+        figure = _DRAW[kind](results, entrant, replicate, by.value)
+    figure.savefig(out, dpi=150, metadata={"Date": None} if out.suffix.lower() == ".svg" else None)
+    print(out)
+
+
+def _learning(results: Results, named: list[str] | None, _replicate: int, _by: str) -> "Figure":
+    from arena.figures_learning import draw_learning
+
+    return _figure_of(draw_learning(results, named or _best(results, _SOME)))
+
+
+def _regret(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
+    from arena.figures_scores import draw_regret
+    from arena.regret import fewest_steps
+    from arena.trained import conditions_of, run_arrays
+
+    names = named or _best(results, _SOME)
+    for name in names:
+        run_arrays(results, name, replicate)  # is there such a run? before the search, which takes seconds
+    starts = conditions_of(results).start_states(replicate)[:, 0]
+    fewest = fewest_steps(results, [replicate])[replicate]
+    return _figure_of(draw_regret(results, names, replicate, starts, fewest))
+
+
+def _of_one(name: str) -> Callable[..., "Figure"]:
+    """What draws the policy of one entrant by this function of ``arena.figures_policy``."""
+
+    def draw(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
+        from arena import figures_policy
+        from arena.trained import trained
+
+        names = named or _best(results, 1)
+        if len(names) != 1:
+            raise ValueError(f"--entrant must be given once for a picture of one policy, got {len(names)}")
+        return _figure_of(getattr(figures_policy, name)(trained(results, names[0], replicate)))
+
+    return draw
+
+
+def _sweep(results: Results, named: list[str] | None, _replicate: int, _by: str) -> "Figure":
+    from arena.figures_sweep import draw_sweep
+    from arena.scores import scores_of
+
+    _all(named)
+    return draw_sweep(results, scores_of(results))
+
+
+def _of_board(name: str) -> Callable[..., "Figure"]:
+    """What draws the leaderboard by this function of ``arena.figures_scores``."""
+
+    def draw(results: Results, named: list[str] | None, _replicate: int, by: str) -> "Figure":
+        from arena import figures_scores
+        from arena.leaderboard import leaderboard
+
+        _all(named)
+        return _figure_of(getattr(figures_scores, name)(_counted(leaderboard(results, by))))
+
+    return draw
+
+
+def _pairs(results: Results, named: list[str] | None, _replicate: int, by: str) -> "Figure":
+    from arena.figures_scores import draw_pairs
+    from arena.leaderboard import leaderboard
+    from arena.scores import scores_of
+
+    _all(named)
+    return _figure_of(draw_pairs(scores_of(results, by), _counted(leaderboard(results, by))))
+
+
+_DRAW: dict[Kind, Callable[..., "Figure"]] = {
+    Kind.LEARNING: _learning,
+    Kind.POLICY: _of_one("draw_policy"),
+    Kind.VISITS: _of_one("draw_visits"),
+    Kind.VALUE: _of_one("draw_value"),
+    Kind.PHASE: _of_one("draw_phase"),
+    Kind.REGRET: _regret,
+    Kind.SWEEP: _sweep,
+    Kind.INTERVALS: _of_board("draw_intervals"),
+    Kind.RANKS: _of_board("draw_ranks"),
+    Kind.PAIRS: _pairs,
+}
+
+
+def _figure_of(drawn: "Axes | Figure") -> "Figure":
+    """The figure of axes; a figure itself."""
+    figure: Figure = drawn if hasattr(drawn, "savefig") else drawn.figure  # type: ignore[assignment]
+    return figure
+
+
+def _all(named: list[str] | None) -> None:
+    if named:
+        raise ValueError(f"--entrant must be left out of a picture of all entrants, got {named[0]!r}")
+
+
+def _counted(board: "Leaderboard") -> "Leaderboard":
+    if not board.replicates:
+        raise ValueError("there is no replicate that all entrants have run")
+    return board
+
+
+def _best(results: Results, count: int) -> list[str]:
+    """The names of so many entrants: those with the fewest steps in their finished runs."""
+    frame = results.frame()
+    means = frame[frame["status"] == "finished"].groupby("entrant", sort=False)["steps"].mean()
+    if means.empty:
+        raise ValueError("no run has finished: there is nothing to draw")
+    return [str(name) for name in means.nsmallest(count).index]
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Make it a command of ``app``."""
+    app.command()(plot)

@@ -229,12 +229,12 @@ class DrawsOtherwiseWhenMade(Good):
 
 
 class SharesADictionary(DoesNotLearn):
-    """What one agent has seen, the next one knows; no array shows it."""
+    """What one agent has seen, the next one knows, until all is seen; no array shows it."""
 
     seen: dict[float, bool] = {}  # noqa: RUF012 (on purpose)
 
     def greedy(self, observation: Any) -> int:
-        self.seen[float(observation[0])] = True
+        self.seen[round(float(observation[0]), 2)] = True
         return len(self.seen) % 2
 
 
@@ -329,7 +329,7 @@ BAD: dict[type, dict[str, str]] = {  # each with all that is found, as a pattern
     ChoosesThree: {
         "actions are valid": r"act\(\[.*\]\) must be less than 3 and not negative, got 3",
         "survives hostile transitions": r"act\(\[.*\]\) must be less than 3 and not negative, got 3",
-        "same seed same bits": "ValueError: action must be less than 3, got 3",
+        "same seed same bits": "IndexError: index 3 is out of bounds",
         "independent of others": "ValueError: action must be less than 3, got 3",
         "travels": "ValueError: action must be less than 3, got 3",
         "evaluation does not learn": "IndexError: index 3 is out of bounds",
@@ -492,7 +492,7 @@ def test_the_checks_leave_the_suite_s_own_entrants_and_checks_as_parameters() ->
     names, pairs = mark.args
     assert names == ("entrant", "check")
     assert len(pairs) == 2 * len(CHECKS)
-    assert pairs[0].id == "one-actions_are_valid"
+    assert pairs[0].id == "one-same_seed_same_bits"
 
 
 # The command
@@ -548,6 +548,6 @@ def test_the_command_prints_json(file: str, capsys: pytest.CaptureFixture[str]) 
 
 def test_the_command_checks_an_agent_by_its_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "momentum"]) == 0
-    assert capsys.readouterr().out.startswith("momentum\n  ok      actions are valid\n")
+    assert capsys.readouterr().out.startswith("momentum\n  ok      same seed same bits\n")
     assert main(["check", "momentun"]) == 2
     assert "did you mean 'momentum'?" in capsys.readouterr().err

@@ -44,8 +44,10 @@ def imap(
 
     if not tasks:
         return
-    single = {"n_jobs": 2, "pre_dispatch": 1, "batch_size": 1}  # joblib's one worker is this process
-    options: dict[str, Any] = single if apart and joblib.effective_n_jobs(n_jobs) == 1 else {"n_jobs": n_jobs}
+    # Tasks are long; in batches of several, one worker would end long after the others.
+    options: dict[str, Any] = {"n_jobs": n_jobs, "batch_size": 1}
+    if apart and joblib.effective_n_jobs(n_jobs) == 1:
+        options |= {"n_jobs": 2, "pre_dispatch": 1}  # joblib's one worker is this process
     try:
         parallel = joblib.Parallel(return_as="generator_unordered", max_nbytes=None, **options)
     except ValueError:

@@ -4,6 +4,7 @@ Their types and bounds are annotations, such as ``discount: Annotated[float, Int
 with the vocabulary of the package annotated-types; the usual ones have names here.
 """
 
+import dataclasses
 import functools
 import inspect
 import typing
@@ -45,13 +46,20 @@ class Parameter:
         """Whether it has no default."""
         return self.default is inspect.Parameter.empty
 
+    @property
+    def made(self) -> bool:
+        """Whether the default is made anew each time, as ``default_factory`` of a dataclass does."""
+        return isinstance(self.default, type(dataclasses._HAS_DEFAULT_FACTORY))  # type: ignore[attr-defined] # noqa: SLF001 (there is no public name)
+
     def settle(self, value: Any) -> Any:
         """``value`` as the agent receives it: a table of a file as a named tuple, a list as a tuple.
+
+        The default is always accepted, as it is when none is given: results files tell all parameters.
 
         Raises:
             TypeError, ValueError: when it breaks the rule of the annotation.
         """
-        return settle(self.name, value, self.annotation)
+        return self.default if _same(value, self.default) else settle(self.name, value, self.annotation)
 
     def rule(self) -> str:
         """Type and bounds in words, such as ``float in [0, 1]``."""
@@ -96,7 +104,9 @@ def settle_all(agent: Any, label: str, given: Mapping[str, Any]) -> dict[str, An
         if one.required and one.name not in given:
             raise TypeError(f"parameter {one.name} of {label} must be given")
     complete = {
-        name: one.settle(given[name]) if name in given else one.default for name, one in declared.items()
+        name: one.settle(given[name]) if name in given else one.default
+        for name, one in declared.items()
+        if name in given or not one.made  # the class makes it, in the worker
     }
     return complete | {name: as_tuples(value) for name, value in given.items() if name not in declared}
 
@@ -113,6 +123,15 @@ def validated(create: Create) -> Create:
         return create(cls, task, **settle_all(cls, cls.__name__, given), **extra)
 
     return typing.cast("Create", settled)
+
+
+def _same(value: Any, default: Any) -> bool:
+    """Whether ``value``, perhaps read from a file, is ``default``."""
+    if isinstance(value, Mapping) and hasattr(default, "_asdict"):
+        fields = default._asdict()
+        return value.keys() == fields.keys() and all(_same(value[name], fields[name]) for name in fields)
+    plain = type(value) is type(default) and isinstance(value, (int, float, str))
+    return value is default or (plain and bool(value == default))
 
 
 def _hints(maker: Any) -> dict[str, Any]:

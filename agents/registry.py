@@ -56,6 +56,7 @@ BUILT_IN: dict[str, type[Any]] = {
     "optimal": Optimal,
 }
 
+_EITHER = inspect.Parameter.POSITIONAL_OR_KEYWORD
 _METHODS = {
     name: tuple(inspect.signature(getattr(Agent, name)).parameters)[1:] for name in ("act", "learn", "greedy")
 }
@@ -159,6 +160,19 @@ def check_methods(agent: Any) -> None:
             ) from None
         except ValueError:  # not written in Python
             continue
+    if hasattr(agent, "create"):
+        _check_create(agent)
+
+
+def _check_create(agent: type[Any]) -> None:
+    found = inspect.signature(agent.create)
+    kinds = [one.kind for one in found.parameters.values()]
+    positional = sum(kind in (inspect.Parameter.POSITIONAL_ONLY, _EITHER) for kind in kinds)
+    if positional != 1 and inspect.Parameter.VAR_POSITIONAL not in kinds:
+        raise TypeError(
+            f"{agent.__name__}.create must be a class method that takes (cls, task, *, its parameters), "
+            f"got {found} without the class"
+        )
 
 
 @cache

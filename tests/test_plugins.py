@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import math
 import re
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from agents.registry import all_agents
 from arena import Entrant, Evaluation, Results, Tournament, Training, load, load_plugin, run, sweep
 from arena.cli import main
 from arena.configuration import load_tournament
+from arena.testing import findings
 
 # Two agents of one behaviour, one compiled, one not; what they learn shows every part of the code.
 PLUGIN = """
@@ -104,6 +106,7 @@ class Driver:
         return 2 if observation[1] >= 0.0 else 0
 """
 ACT = "(self, observation, progress, rng)"
+CREATE = "must be a class method that takes (cls, task, *, its parameters)"
 UNDECODABLE = "'utf-8' codec can't decode byte 0xe9 in position 5: invalid continuation byte"
 BROKEN: dict[str, tuple[bytes | None, str]] = {
     "a syntax error": (b"class Driver\n", "plugin bad.py, line 1: SyntaxError: expected ':'"),
@@ -126,6 +129,14 @@ BROKEN: dict[str, tuple[bytes | None, str]] = {
     "a method with other arguments": (
         DRIVER.replace("progress, rng", "rng").encode(),
         f"plugin bad.py: Driver.act must take {ACT}, got (self, observation, rng)",
+    ),
+    "a `create` with parameters by place": (
+        f"{DRIVER}\n    @classmethod\n    def create(cls, task, gain=1.0):\n        return cls()\n".encode(),
+        f"plugin bad.py: Driver.create {CREATE}, got (task, gain=1.0) without the class",
+    ),
+    "a `create` that is no class method": (
+        f"{DRIVER}\n    def create(cls, task):\n        return cls()\n".encode(),
+        f"plugin bad.py: Driver.create {CREATE}, got (cls, task) without the class",
     ),
     "no agent in it": (
         b"GAIN = 1.0\n",
@@ -602,6 +613,48 @@ def test_a_parameter_without_a_default_must_be_given() -> None:
         Entrant("a", driver)
     assert parameters_of(driver)[0]["weight"].rule() == "float"
     assert main(["check", "needy.py"]) == 2
+
+
+PLACES = """
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+class Spring(NamedTuple):
+    stiffness: float
+    reach: float
+
+
+@dataclass
+class Driver:
+    limit: float = math.inf
+    seed: int = None
+    spring: Spring = Spring(1.0, math.inf)
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(3))
+"""
+
+
+def test_any_default_is_accepted_made_in_the_worker_and_verified(capsys: pytest.CaptureFixture[str]) -> None:
+    methods = DRIVER.partition("class Driver:\n")[2].replace("pass", "self.counts[action] += 1")
+    Path("places.py").write_text(PLACES + methods)
+    Path("race.toml").write_text(
+        f'plugins = ["places.py"]\n{RACE.partition("[[entr")[0]}[[entrants]]\nagent = "driver"'
+    )
+    (entrant,) = load_tournament("race.toml").entrants
+    assert set(entrant.parameters) == {"limit", "seed", "spring"}
+    assert not [one for one in findings(entrant) if one.status == "failed"]
+    assert main(["run", "race.toml", "--jobs", "2", "--out", "r.sqlite"]) == 0
+    with load("r.sqlite") as results:
+        assert results.arrays("driver")["counts"].sum() == results.runs[0]["iterations"]
+    capsys.readouterr()
+    assert main(["verify", "r.sqlite"]) == 0
+    assert capsys.readouterr().out == "no difference\n"
+    with pytest.raises(ValueError, match="limit must be a finite number, got nan"):
+        Entrant("a", agent_class("driver"), limit=math.nan)
 
 
 # Names

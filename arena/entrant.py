@@ -108,9 +108,16 @@ def sweep(
         parameters: those that all have in common.
 
     Raises:
-        TypeError, ValueError: as ``Entrant`` does, and when a sweep is no list or is empty.
+        TypeError, ValueError: as ``Entrant`` does, and when a sweep is no list or is empty, or its
+            parameter is given as well.
     """
+    if not isinstance(over, Mapping):
+        raise TypeError(f"over must be a mapping from parameters to lists of values, got {over!r}")
     for key, values in over.items():
+        if key in parameters:
+            raise ValueError(
+                f"sweep of {key} must not be of a parameter that is given, got {parameters[key]!r}"
+            )
         if not isinstance(values, Sequence) or isinstance(values, str) or not values:
             raise ValueError(f"sweep of {key} must be a list of values that is not empty, got {values!r}")
     for values in itertools.product(*over.values()):

@@ -2,13 +2,14 @@
 
 import contextlib
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agents import HarmonicRate, MomentumAgent, Sarsa
-from arena import Entrant, Evaluation, Tournament, Training
+from arena import Entrant, Evaluation, Tournament, Training, sweep
 from arena.configuration import from_dict, load_tournament
 from envs import Hill
 
@@ -99,6 +100,10 @@ def test_a_file_without_a_name_is_called_by_its_own(tmp_path: Path) -> None:
             "[[entrants]]\nagent = 'sarsa'\nparameters = {bins = 0}",
             "entrant 'sarsa': bins must be at least 1",
         ),
+        (
+            "[[entrants]]\nagent = 'sarsa'\nparameters = {bins = 2}\nsweep = {bins = [3]}",
+            "sweep of bins must not be of a parameter that is given, got 2",
+        ),
         ("[[entrants]]\nagent = 'sarsa'\nparameters = {bins = [2, 0]}", "bins must be at least 1, got 0"),
         ("[[entrants]]\nagent = 'sarsa'\nparameters = {goal = 'z'}", "goal must be one of .* got 'z'"),
         ("replicates = 1e3\n[[entrants]]\nagent = 'sarsa'", "replicates must be an integer, got 1000.0"),
@@ -120,6 +125,12 @@ def test_a_missing_file_a_folder_and_bytes_are_told(tmp_path: Path) -> None:
     (tmp_path / "b.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ValueError, match="is not a TOML file"):
         load_tournament(tmp_path / "b.toml")
+
+
+def test_a_sweep_over_what_is_no_mapping_is_told() -> None:
+    wrong: Any = [3]
+    with pytest.raises(TypeError, match=r"^over must be a mapping from parameters .*, got \[3\]$"):
+        list(sweep("s", Sarsa, over=wrong))
 
 
 VALUES = st.recursive(

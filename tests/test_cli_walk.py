@@ -170,6 +170,26 @@ def test_an_interruption_before_anything_was_finished(
 
 
 @pytest.mark.slow
+def test_the_page_shows_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -> None:
+    printed = "\n".join(line.rstrip() for line in told(capsys).splitlines())
+    page = (ROOT / "docs" / "walk.md").read_text()
+    shown = re.search(r"```text\n(.*?)\n```", page, re.DOTALL)
+    assert shown is not None
+    assert shown[1] == printed
+    example = re.search(r"```python\n(.*?)```\n\n```\n(.*?)```", page, re.DOTALL)
+    assert example is not None
+    command = [sys.executable, "-c", example[1]]
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == example[2]
+
+
+def test_the_page_on_physics_shows_what_the_script_prints() -> None:
+    command = [sys.executable, str(ROOT / "scripts" / "energies.py"), "--out", "energies.png"]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert printed in (ROOT / "docs" / "physics.md").read_text()
+    assert Path("energies.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="sends POSIX signals")
 def test_ctrl_c_reaches_all_workers() -> None:
     command = [sys.executable, "-m", "arena", "walk", "--episodes", "100000", "--jobs", "2", "--json"]

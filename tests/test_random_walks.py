@@ -1,7 +1,12 @@
 """Random walks on the hill: the paper's Algorithm 1, to the bit whatever runs it."""
 
+import json
 import math
+import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import joblib
@@ -14,6 +19,7 @@ from arena import InterruptedWalk, RandomWalk, random_walk
 from envs import Hill
 from envs.streams import stream
 
+SCRIPTS = Path(__file__).parent.parent / "scripts"
 NEAR = Hill(goal_position=-0.35)
 """A hill with short walks."""
 
@@ -156,3 +162,11 @@ def test_bad_arguments_are_refused(error: type[Exception], message: str, argumen
 def test_twenty_thousand_walks_are_42_300_steps_long_on_average() -> None:
     lengths = random_walk(20_000, seed=6).lengths
     assert abs(lengths.mean() - 42_300) <= 2 * lengths.std() / math.sqrt(len(lengths))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not (shutil.which("gcc") or shutil.which("cc")), reason="needs a C compiler")
+def test_the_walks_keep_up_with_a_loop_in_c() -> None:
+    command = [sys.executable, str(SCRIPTS / "bench_walk.py"), "--json", "--episodes", "500", "--part", "2"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout)["C / ours"] >= 1 / 1.2

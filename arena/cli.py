@@ -18,6 +18,8 @@ from arena.cli_agents import Plugins, add_commands, load_plugins
 from arena.cli_curves import add_commands as add_curves_command
 from arena.cli_paper import add_commands as add_paper_command
 from arena.cli_plot import add_commands as add_plot_command
+from arena.cli_report import add_commands as add_report_command
+from arena.cli_report import page_of
 from arena.cli_results import add_commands as add_result_commands
 from arena.cli_results import print_results
 from arena.cli_walk import add_commands as add_walk_command
@@ -37,6 +39,7 @@ app = typer.Typer(
 add_commands(app)
 add_result_commands(app)
 add_plot_command(app)
+add_report_command(app)
 add_curves_command(app)
 add_paper_command(app)
 add_walk_command(app)
@@ -101,6 +104,7 @@ def run(
     plugin: Plugins = None,
     driver: Annotated[Driver, typer.Option(help="What steps the cars.")] = Driver.AUTO,
     strict: Annotated[bool, typer.Option(help="Exit with 1 if an entrant failed.")] = False,
+    report: Annotated[bool, typer.Option(help="Write a page of the results beside them.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Run a tournament, keep its results and print its tables."""
@@ -117,6 +121,8 @@ def run(
         raise _InterruptedError(out) from None
     with results:
         print_results(results, as_json=as_json)
+        if report:
+            _write_page(results, page_of(out))
         failures = sum(one["status"] != "finished" for one in results.runs)
         if failures and (strict or failures == len(results.runs)):
             raise typer.Exit(SOME_FAILED)
@@ -207,6 +213,14 @@ def _run(tournament: Tournament, out: Path, jobs: int, driver: str) -> Results:
             driver,
             progress=lambda finished, total: bar.update(task, completed=finished, total=total),
         )
+
+
+def _write_page(results: Results, page: Path) -> None:
+    from arena.report import write_report
+
+    write_report(results, page)
+    if sys.stderr.isatty():
+        _say(f"the page is {page}")
 
 
 def _say(sentence: str) -> None:

@@ -1,15 +1,16 @@
 """The paper's Figure 4: the accumulated reward while the agents learn."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.adaptive import ADAPTIVE
 from arena.curves import WINDOW, moving_average
 from arena.palette import DASHES, LINES, make_axes
 from arena.results import Results
-from arena.trained import run_arrays
 from envs.checks import choice, integer
 
 if TYPE_CHECKING:
@@ -28,15 +29,21 @@ def reward_curves(results: Results, entrant: str, window: int = WINDOW) -> NDArr
     """
     config = results.config
     choice("entrant", entrant, [one["name"] for one in config["entrants"]])
-    finished = [
-        run["replicate"] for run in results.runs if (run["entrant"], run["status"]) == (entrant, "finished")
-    ]
+    most = config["max_replicates"] if config["replicates"] == ADAPTIVE else config["replicates"]
+    finished = list(_lengths(results, entrant, range(most)))
     if not finished:
         raise ValueError(f"{entrant!r} has no finished run: there is no learning curve")
     episodes = config["training"]["episodes"]
     if integer("window", window, 1) > episodes:
         raise ValueError(f"window must be at most the {episodes} training episodes, got {window}")
-    return np.array([-moving_average(run_arrays(results, entrant, n)["lengths"], window) for n in finished])
+    return np.array([-moving_average(lengths, window) for lengths in finished])
+
+
+def _lengths(results: Results, entrant: str, replicates: Iterable[int]) -> Iterator[NDArray[np.int64]]:
+    """Steps of the training episodes of the finished runs."""
+    for replicate in replicates:
+        with suppress(KeyError):  # not run yet; one that failed has no arrays
+            yield results.arrays(entrant, replicate)["lengths"]
 
 
 def draw_learning(

@@ -43,9 +43,17 @@ def paper_claims(results: Results, walks: Sequence[RandomWalk]) -> list[Claim]:
     Raises:
         ValueError: when the results are not those of the whole tournament.
     """
+    return [*_walk_claims(walks), *results_claims(results)]
+
+
+def results_claims(results: Results) -> list[Claim]:
+    """The same without those of section 3.2, which are about random walks.
+
+    Raises:
+        ValueError: when the results are not those of the whole tournament.
+    """
     tables = paper_tables(results)
     return [
-        *_walk_claims(walks),
         *_cell_claims(tables),
         *_count_claims(tables["accuracy"]),
         *_best_cell_claims(tables["mean_length"]),

@@ -36,7 +36,8 @@ def paper_tables(results: Results) -> dict[str, Floats]:
 
 
 def _key(run: dict[str, Any]) -> Key:
-    n_p, n_v = run["parameters"]["bins"]
+    bins = run["parameters"].get("bins")
+    n_p, n_v = bins if isinstance(bins, list) and len(bins) == 2 else (0, 0)
     return run["agent"], n_p, n_v
 
 

@@ -57,13 +57,22 @@ class Trained:
 
         It ends at the goal or at the limit of the test.
         """
-        state, states = (position, 0.0), [(position, 0.0)]
-        for _ in range(self.conditions.evaluation.max_steps):
-            state, _, terminated = self.hill.step(state, int(self.agent.greedy(self.hill.observe(state))))
-            states.append(state)
-            if terminated:
-                break
-        return np.array(states)
+        return drive(self.hill, self.agent, position, self.conditions.evaluation.max_steps)
+
+
+def drive(hill: Hill, agent: Any, position: float, limit: int) -> NDArray[np.float64]:
+    """A drive by ``agent.greedy`` from rest at ``position``, until the goal or for ``limit`` steps.
+
+    Returns:
+        Positions and velocities, float64, shape (steps + 1, 2).
+    """
+    state, states = (position, 0.0), [(position, 0.0)]
+    for _ in range(limit):
+        state, _, terminated = hill.step(state, int(agent.greedy(hill.observe(state))))
+        states.append(state)
+        if terminated:
+            break
+    return np.array(states)
 
 
 def trained(results: Results, entrant: str, replicate: int = 0) -> Trained:

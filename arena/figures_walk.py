@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from arena.distributions import Fit
+from arena.palette import BLACK, BLUE, DASHES, LINES, RED, SKY
 from arena.walk_study import PAPER, WalkStudy
 from envs import Hill
 
@@ -16,18 +17,6 @@ if TYPE_CHECKING:
 
 BINS = 80
 """Of the paper's histogram."""
-
-# Okabe & Ito 2008: told apart with any kind of colour vision. The lines differ in their dashes as well.
-_BLACK, _ORANGE, _SKY, _GREEN, _BLUE, _RED, _PURPLE = (
-    "#000000",
-    "#E69F00",
-    "#56B4E9",
-    "#009E73",
-    "#0072B2",
-    "#D55E00",
-    "#CC79A7",
-)
-_LINES = tuple(zip((_BLACK, _RED, _BLUE, _GREEN, _PURPLE, _ORANGE), ("-", "--", "-.", ":", (0, (5, 1)), "-")))
 
 
 def draw_hill(axes: "Axes", hill: Hill = Hill()) -> "Axes":  # noqa: B008 (immutable)
@@ -42,14 +31,14 @@ def draw_hill(axes: "Axes", hill: Hill = Hill()) -> "Axes":  # noqa: B008 (immut
     """
     x = np.linspace(hill.min_position, hill.max_position, 400)
     height = np.vectorize(hill.height)
-    axes.plot(x, height(x), color=_BLACK, label=f"y = sin {hill.omega:g}x")
+    axes.plot(x, height(x), color=BLACK, label=f"y = sin {hill.omega:g}x")
     starts = np.linspace(hill.min_start, hill.max_start, 20)
-    axes.plot(starts, height(starts), color=_SKY, linewidth=6, alpha=0.7, zorder=1, label="starts")
+    axes.plot(starts, height(starts), color=SKY, linewidth=6, alpha=0.7, zorder=1, label="starts")
     centre = 0.5 * (hill.min_start + hill.max_start)
-    axes.plot(centre, hill.height(centre), "o", color=_BLUE, markersize=9, label="car")
+    axes.plot(centre, hill.height(centre), "o", color=BLUE, markersize=9, label="car")
     goal = (hill.goal_position, hill.height(hill.goal_position))
-    axes.plot(*goal, marker="^", color=_RED, markersize=10, linestyle="none", label="goal")
-    axes.axvline(hill.goal_position, color=_RED, linestyle=":", linewidth=1)
+    axes.plot(*goal, marker="^", color=RED, markersize=10, linestyle="none", label="goal")
+    axes.axvline(hill.goal_position, color=RED, linestyle=":", linewidth=1)
     axes.set(xlabel="position x (units of length)", ylabel="height y (units of length)", title="The hill")
     axes.legend(loc="best", frameon=False)
     return axes
@@ -68,10 +57,10 @@ def draw_lengths(axes: "Axes", lengths: ArrayLike, fits: Sequence[Fit] = (), bin
         ``axes``.
     """
     values = np.asarray(lengths, np.float64)
-    _, edges, _ = axes.hist(values, bins, color=_SKY, alpha=0.6, label=f"{len(values):,} episodes")
+    _, edges, _ = axes.hist(values, bins, color="0.8", label=f"{len(values):,} episodes")
     width = edges[1] - edges[0]
     x = np.linspace(edges[0], edges[-1], 1000)[1:]  # a density may be infinite at its lower end
-    for fit, (color, dashes) in zip(fits, _LINES):
+    for fit, color, dashes in zip(fits, LINES, DASHES):
         density = fit.family.law.pdf(x, *fit.parameters)
         axes.plot(x, len(values) * width * density, color=color, linestyle=dashes, label=fit.family.name)
     axes.set(xlabel="length of the episode (steps)", ylabel=f"episodes per bin of {width:,.0f} steps")
@@ -93,6 +82,6 @@ def save_figure(study: WalkStudy, path: Path) -> None:
     draw_hill(left, study.walks[0].hill)
     draw_lengths(right, study.walks[0].lengths, study.fits)
     if study.is_the_paper_s:
-        right.axvline(PAPER.mean, color=_BLACK, linewidth=1, linestyle=":", label="mean, the paper's")
+        right.axvline(PAPER.mean, color=BLACK, linewidth=1, linestyle=":", label="mean, the paper's")
         right.legend(frameon=False)
     figure.savefig(path, dpi=150)

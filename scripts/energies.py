@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.palette import LINES
 from envs import Dynamics, Hill
 
 COAST = 1
@@ -53,8 +54,7 @@ def draw(found: dict[tuple[str, str], NDArray[np.float64]], duration: float, pat
     figure = Figure(figsize=(12, 4.5), layout="constrained")
     panels = figure.subplots(1, len(Dynamics), sharey=True)
     for axes, dynamics in zip(panels, Dynamics):
-        styles = zip(("#0072B2", "#D55E00", "#009E73", "#CC79A7"), ("-", "-", "--", "-."))
-        for case, (color, dashes) in zip(CASES, styles):
+        for case, color, dashes in zip(CASES, LINES, ("-", "-", "--", "-.")):
             energies = found[dynamics.label, case]
             time = np.linspace(0.0, duration, len(energies))
             axes.plot(time, energies, color=color, linestyle=dashes, linewidth=0.9, label=case)

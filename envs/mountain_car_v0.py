@@ -10,6 +10,7 @@
 """
 
 from collections.abc import Iterable, Mapping
+from itertools import compress
 from typing import Any, ClassVar
 
 import numpy as np
@@ -19,6 +20,7 @@ from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 
 from envs.checks import choice, instance, integer
+from envs.fleet import make_fleet
 from envs.hill import Hill, State
 from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Image, Window, picture, text
 from envs.starts import checked_state
@@ -27,6 +29,7 @@ from envs.streams import stream
 __all__ = ["env", "parallel_env", "raw_env"]
 
 Observation = NDArray[np.float64]
+_PLAIN = frozenset({int, np.int64})  # what actions usually are, and need no slower look
 
 
 def env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
@@ -88,7 +91,8 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
             car: spaces.Box(low, high, dtype=np.float64) for car in self.possible_agents
         }
         self.action_spaces = {car: spaces.Discrete(hill.n_actions) for car in self.possible_agents}
-        self._states: dict[str, State] = {}
+        self._fleet = make_fleet(hill, len(self.possible_agents))
+        self._live: list[int] = []  # numbers of ``agents`` among ``possible_agents``
         self._streams: dict[str, np.random.Generator] = {}
         self._steps = 0
         self._window: Window | None = None
@@ -120,17 +124,15 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         if seed is not None or not self._streams:
             self._reseed(seed)
         self.agents = list(self.possible_agents)
+        self._live = list(range(len(self.agents)))
         self._steps = 0
-        if self.same_start:
-            together = self.hill.reset(self._streams[""])
-            self._states = {car: given.get(car, together) for car in self.agents}
-        else:
-            self._states = {
-                car: given[car] if car in given else self.hill.reset(self._streams[car])
-                for car in self.agents
-            }
+        together = self.hill.reset(self._streams[""]) if self.same_start else None
+        for number, car in enumerate(self.agents):
+            start = given.get(car, together)
+            self._fleet.put(number, start or self.hill.reset(self._streams[car]))
         self._follow()
-        return self._observe(), {car: {} for car in self.agents}
+        observations = self._fleet.observe(self._live)
+        return dict(zip(self.agents, observations, strict=True)), {car: {} for car in self.agents}
 
     def step(
         self, actions: Mapping[str, int]
@@ -150,17 +152,22 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
             TypeError, ValueError: when a live car has no action, or one that is not 0, 1 or 2.
         """
         cars = self.agents
-        chosen = [_action(actions, car, self.hill.n_actions) for car in cars]
+        chosen = _actions(actions, cars, self.hill.n_actions)
         self._steps += 1
-        rewards, terminations = {}, {}
-        for car, action in zip(cars, chosen, strict=True):
-            self._states[car], rewards[car], terminations[car] = self.hill.step(self._states[car], action)
+        observations, rewards, terminated = self._fleet.step(self._live, chosen)
         late = self._steps >= self.max_steps
-        truncations = {car: late and not terminations[car] for car in cars}
-        observations = self._observe()
-        self.agents = [car for car in cars if not (late or terminations[car])]
+        if late or any(terminated):
+            goes_on = [not (late or there) for there in terminated]
+            self._live = list(compress(self._live, goes_on))
+            self.agents = list(compress(cars, goes_on))
         self._follow()
-        return observations, rewards, terminations, truncations, {car: {} for car in cars}
+        return (
+            dict(zip(cars, observations, strict=True)),
+            dict(zip(cars, rewards, strict=True)),
+            dict(zip(cars, terminated, strict=True)),
+            {car: late and not there for car, there in zip(cars, terminated, strict=True)},
+            {car: {} for car in cars},
+        )
 
     def state(self) -> Observation:
         """Position and velocity of each of ``possible_agents`` in turn; shape (2 * cars,).
@@ -170,18 +177,20 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         Raises:
             ValueError: before the first reset.
         """
-        if not self._states:
+        if not self._streams:
             raise ValueError("state is there after the first reset, not before")
-        return np.array([self._states[car] for car in self.possible_agents]).ravel()
+        return np.array(self._fleet.states()).ravel()
 
     def render(self) -> Image | str | None:
         """What the cars are doing, in the render mode: a picture, a text, or None."""
         if self.render_mode is None:
             logger.warn("render is called without a render_mode; give one to parallel_env")
             return None
+        there = self._fleet.states() if self._streams else []
+        cars = dict(zip(self.possible_agents, there))
         if self.render_mode == "ansi":
-            return text(self._states, self._steps)
-        image = picture(self.hill, self._states, self._steps)
+            return text(cars, self._steps)
+        image = picture(self.hill, cars, self._steps)
         if self.render_mode == "rgb_array":
             return image
         self._window = self._window or Window(self.metadata["name"])
@@ -202,9 +211,6 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         """Keep the window up to date."""
         if self.render_mode == "human":
             self.render()
-
-    def _observe(self) -> dict[str, Observation]:
-        return {car: np.array(self.hill.observe(self._states[car])) for car in self.agents}
 
     def _reseed(self, seed: int | None) -> None:
         master = np.random.SeedSequence(None if seed is None else integer("seed", seed, 0))
@@ -228,6 +234,22 @@ def _starts(hill: Hill, starts: Any, cars: list[str]) -> dict[str, State]:
     if not isinstance(starts, Mapping) or not starts.keys() <= set(cars):
         raise ValueError(f"start must give cars of {cars}, got {starts!r}")
     return {car: checked_state(hill, state, f" of {car}") for car, state in starts.items()}
+
+
+def _actions(actions: Mapping[str, int], cars: list[str], n_actions: int) -> list[int]:
+    """The actions of the cars.
+
+    Raises:
+        TypeError, ValueError: when one is missing, or is none.
+    """
+    chosen = [actions.get(car, -1) for car in cars]
+    if (
+        _PLAIN.issuperset(map(type, chosen))
+        and min(chosen, default=0) >= 0
+        and max(chosen, default=0) < n_actions
+    ):
+        return list(map(int, chosen))
+    return [_action(actions, car, n_actions) for car in cars]
 
 
 def _action(actions: Mapping[str, int], car: str, n_actions: int) -> int:

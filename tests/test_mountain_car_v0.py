@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from envs import Hill, mountain_car_v0
+from envs.fleet import COMPILED
 from envs.mountain_car_v0 import Observation, env, parallel_env, raw_env
 
 Trajectory = list[dict[str, bytes]]
@@ -284,3 +285,50 @@ def test_each_message_names_what_was_wrong(make: Any, message: str) -> None:
 
 def make_cars(**arguments: Any) -> Any:
     return parallel_env(**arguments)
+
+
+# Many cars: one compiled loop
+
+
+def test_many_cars_drive_as_each_would_alone() -> None:
+    names = [f"car_{number}" for number in range(COMPILED + 3)]
+    together = parallel_env(names, max_steps=60)
+    alone = {name: parallel_env([name], max_steps=60) for name in names}
+    options = {"start": {"car_1": (0.4, 0.05), "car_5": (0.45, 0.06)}}  # two are there before the others
+    for seed in (3, None):
+        first = together.reset(seed, options)[0]
+        for name, car in alone.items():
+            mine = {"start": {name: options["start"][name]}} if name in options["start"] else {}
+            assert car.reset(seed, mine)[0][name].tobytes() == first[name].tobytes()
+        lengths: set[int] = set()
+        while together.agents:
+            actions = {car: np.int64((number + len(lengths)) % 3) for number, car in enumerate(names)}
+            before = list(together.agents)
+            answers = together.step({car: int(actions[car]) for car in together.agents})
+            for name in before:
+                single = alone[name].step({name: int(actions[name])})
+                assert answers[0][name].tobytes() == single[0][name].tobytes()
+                assert [part[name] for part in answers[1:4]] == [part[name] for part in single[1:4]]
+                assert [type(part[name]) for part in answers[1:4]] == [float, bool, bool]
+            lengths.add(len(together.agents))
+        assert len(lengths) == 3
+
+
+def test_observations_of_many_cars_are_arrays_of_their_own() -> None:
+    cars = parallel_env(COMPILED, max_steps=5)
+    first, _ = cars.reset(seed=1)
+    after = cars.step(dict.fromkeys(cars.agents, 1))[0]
+    kept = {car: observation.copy() for car, observation in after.items()}
+    after["car_0"][:] = 7.0
+    first["car_1"][:] = 7.0
+    again = cars.step(dict.fromkeys(cars.agents, 1))[0]
+    for car in cars.agents:
+        assert again[car].tolist() == list(Hill().step(tuple(kept[car].tolist()), 1)[0])
+
+
+def test_a_copy_of_many_cars_goes_on_the_same() -> None:
+    cars = parallel_env(COMPILED)
+    drive(cars, 5, 7)
+    copied = pickle.loads(pickle.dumps(cars))  # noqa: S301
+    actions = dict.fromkeys(cars.agents, 2)
+    assert exactly(copied.step(actions)[0]) == exactly(cars.step(actions)[0])

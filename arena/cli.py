@@ -18,6 +18,7 @@ from arena.cli_agents import Plugins, add_commands, load_plugins
 from arena.cli_curves import add_commands as add_curves_command
 from arena.cli_paper import add_commands as add_paper_command
 from arena.cli_plot import add_commands as add_plot_command
+from arena.cli_race import add_commands as add_race_command
 from arena.cli_report import add_commands as add_report_command
 from arena.cli_report import page_of
 from arena.cli_results import add_commands as add_result_commands
@@ -40,6 +41,7 @@ add_commands(app)
 add_result_commands(app)
 add_plot_command(app)
 add_report_command(app)
+add_race_command(app)
 add_curves_command(app)
 add_paper_command(app)
 add_walk_command(app)

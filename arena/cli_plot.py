@@ -63,16 +63,17 @@ def plot(
 
 def _learning(results: Results, named: list[str] | None, _replicate: int, _by: str) -> "Figure":
     from arena.figures_learning import draw_learning
+    from arena.trained import best_entrants
 
-    return _figure_of(draw_learning(results, named or _best(results, _SOME)))
+    return _figure_of(draw_learning(results, named or best_entrants(results, _SOME)))
 
 
 def _regret(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
     from arena.figures_scores import draw_regret
     from arena.regret import fewest_steps
-    from arena.trained import conditions_of, run_arrays
+    from arena.trained import best_entrants, conditions_of, run_arrays
 
-    names = named or _best(results, _SOME)
+    names = named or best_entrants(results, _SOME)
     for name in names:
         run_arrays(results, name, replicate)  # is there such a run? before the search, which takes seconds
     starts = conditions_of(results).start_states(replicate)[:, 0]
@@ -85,9 +86,9 @@ def _of_one(name: str) -> Callable[..., "Figure"]:
 
     def draw(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
         from arena import figures_policy
-        from arena.trained import trained
+        from arena.trained import best_entrants, trained
 
-        names = named or _best(results, 1)
+        names = named or best_entrants(results, 1)
         if len(names) != 1:
             raise ValueError(f"--entrant must be given once for a picture of one policy, got {len(names)}")
         return _figure_of(getattr(figures_policy, name)(trained(results, names[0], replicate)))
@@ -154,15 +155,6 @@ def _counted(board: "Leaderboard") -> "Leaderboard":
     if not board.replicates:
         raise ValueError("there is no replicate that all entrants have run")
     return board
-
-
-def _best(results: Results, count: int) -> list[str]:
-    """The names of so many entrants: those with the fewest steps in their finished runs."""
-    frame = results.frame()
-    means = frame[frame["status"] == "finished"].groupby("entrant", sort=False)["steps"].mean()
-    if means.empty:
-        raise ValueError("no run has finished: there is nothing to draw")
-    return [str(name) for name in means.nsmallest(count).index]
 
 
 def add_commands(app: typer.Typer) -> None:

@@ -1,6 +1,5 @@
 """The agent that a run trained, made again from the arrays in the results file; nothing is trained."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -135,13 +134,17 @@ def conditions_of(results: Results) -> Conditions:
     )
 
 
-def trained_ones(results: Results, replicate: int = 0) -> Iterator[Trained]:
-    """Those of all entrants' agents that can be made again."""
-    for one in results.config["entrants"]:
-        try:
-            yield trained(results, one["name"], replicate)
-        except ValueError:
-            continue
+def best_entrants(results: Results, count: int) -> list[str]:
+    """The names of so many entrants: those with the fewest steps in their finished runs.
+
+    Raises:
+        ValueError: when no run has finished.
+    """
+    frame = results.frame()
+    means = frame[frame["status"] == "finished"].groupby("entrant", sort=False)["steps"].mean()
+    if means.empty:
+        raise ValueError("no run has finished: there is nothing to draw")
+    return [str(name) for name in means.nsmallest(count).index]
 
 
 def _made_again(results: Results, entrant: str, replicate: int, conditions: Conditions) -> Any:

@@ -1,6 +1,7 @@
 """Pictures of cars on a hill: text, pixels, a window."""
 
 import math
+import os
 from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,9 @@ _PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#
 """Okabe and Ito's colours, which the colour-blind can tell apart."""
 
 _GROUND, _SKY, _INK, _FLAG = "#DAD7CD", "#FFFFFF", "#222222", "#2B6E2B"
+_UNSEEN = {"offscreen", "dummy"}
+"""Of SDL's drivers those that it falls back to where there is no screen, unless they are asked for."""
+
 _FINE = 2  # pixels drawn for one that is shown, along each side: smooth edges
 _NAMED = 12  # cars that are named in a picture, at most
 _CURVE = 200  # straight pieces that the hill is drawn with
@@ -147,6 +151,9 @@ class Window:
             self._screen = pygame.display.set_mode(SIZE)
         except pygame.error as error:
             raise RuntimeError(f'render_mode "human" cannot open a window: {error}') from None
+        if pygame.display.get_driver() in _UNSEEN and "SDL_VIDEODRIVER" not in os.environ:
+            self.close()
+            raise RuntimeError('render_mode "human" cannot open a window: there is no screen')
         pygame.display.set_caption(title)
         self._clock = pygame.time.Clock()
 

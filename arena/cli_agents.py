@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.table import Table
+from rich.padding import Padding
 from rich.text import Text
 
 from agents.parameters import parameters_of
@@ -119,14 +119,26 @@ def _source(agent: type[Any]) -> str:
 
 
 def _print_list(entries: list[Registered]) -> None:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("agent", "parameters", "origin"):
-        table.add_column(column, overflow="fold")
+    console = Console(highlight=False, soft_wrap=True)
     for entry in entries:
-        table.add_row(Text(entry.name), Text(", ".join(parameters_of(entry.agent)[0])), Text(entry.origin))
-    console = Console(highlight=False)
-    console.print(table)
-    console.print("arena agents NAME tells all about one.")
+        told = _told(entry)
+        console.print(Text(entry.name, style="bold") + Text(f": {entry.origin}, {_how(told)}"))
+        console.print(Text(f"  {told['source'] or told['summary']}"))
+        given = [_with_default(name, one) for name, one in told["parameters"].items()]
+        console.print(Padding(Text(", ".join(given) or "no parameters"), (0, 0, 1, 4)), soft_wrap=False)
+    console.print("arena agents NAME tells all about one, with the bounds of its parameters.")
+
+
+def _how(told: dict[str, Any]) -> str:
+    return "compiled" if told["compiles"] else "interpreted"
+
+
+def _with_default(name: str, one: dict[str, Any]) -> str:
+    return name if one["required"] else f"{name} = {_compact(one['default'])}"
+
+
+def _compact(value: Any) -> str:
+    return f"{{{_short(value)}}}" if isinstance(value, dict) else _short(value)
 
 
 def _print_agent(entry: Registered) -> None:

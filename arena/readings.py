@@ -70,6 +70,16 @@ READINGS: dict[str, Reading] = {
     "state-visits": Reading(
         "n counts the visits of the state, whatever the action", parameters={"count_visits": "state"}
     ),
+    "slow-state-visits": Reading(
+        "n counts the visits of the state, C = 0.001, starts within 0.05 of -pi/6, positions end at pi/6, "
+        "table from U(-2, 0)",
+        hill={"min_start": _CENTRE - 0.05, "max_start": _CENTRE + 0.05, "max_position": -_CENTRE},
+        parameters={
+            "step_size": HarmonicRate(C=0.001),
+            "count_visits": "state",
+            "initial_values": (-2.0, 0.0),
+        },
+    ),
     "constant-rate": Reading(
         "constant step size 0.2", parameters={"step_size": HarmonicRate(A=1.0, B=5.0, C=0.0)}
     ),

@@ -2,13 +2,15 @@
 
     python scripts/fit_of_readings.py --replicates 2
 
-runs the paper's tournament under each reading and prints a Markdown table (docs/readings.md).
+runs the paper's tournament under each reading and prints a Markdown table (docs/readings.md). ``noise`` is
+how far one replicate is from the mean of the others: no reading can be expected to be nearer to the paper's.
 """
 
 import argparse
 
 from arena import paper, run
 from arena.comparison import compare
+from arena.paper_tables import iterations_spread, paper_tables
 from arena.readings import READINGS
 
 
@@ -19,16 +21,19 @@ def main() -> None:
     parser.add_argument("--readings", nargs="+", choices=READINGS, default=list(READINGS))
     parser.add_argument("--jobs", type=int, default=-1)
     arguments = parser.parse_args()
-    print("| reading | what differs | correlation | mean difference | root mean square | accuracy |")
-    print("|---|---|---:|---:|---:|---:|")
+    if arguments.replicates < 2:
+        parser.error(f"--replicates must be at least 2, got {arguments.replicates}")
+    print("| reading | what differs | correlation | mean difference | root mean square | noise | accuracy |")
+    print("|---|---|---:|---:|---:|---:|---:|")
     for reading in arguments.readings:
         tournament = paper(replicates=arguments.replicates, reading=reading)
         with run(tournament, n_jobs=arguments.jobs) as results:
             found = compare(results)
+            noise = iterations_spread(paper_tables(results)["iterations"]).mean()
         assert found is not None  # noqa: S101 (the tournament is the paper's)
         print(
             f"| `{reading}` | {READINGS[reading].description} | {found.iterations_correlation:.3f} "
-            f"| {found.iterations_difference:+.1f}% | {found.iterations_error:.1f}% "
+            f"| {found.iterations_difference:+.1f}% | {found.iterations_error:.1f}% | {noise:.1f}% "
             f"| {found.mean_accuracy:.1f}% |",
             flush=True,
         )

@@ -116,7 +116,7 @@ def test_every_reading_is_documented() -> None:
         ("bench_learning.py", "--episodes 30 --repeats 1", "QLearning: "),
         ("bench_walk.py", "--episodes 2 --part 1 --repeats 1", "million steps a second"),
         ("measured_coverage.py", "--trials 3 --parts mean", "| mean, Student's t | normal | 5 | 95.0% |"),
-        ("fit_of_readings.py", "--replicates 1 --readings literal --jobs 2", "| `literal` | zero table"),
+        ("fit_of_readings.py", "--replicates 2 --readings literal --jobs 2", "| `literal` | zero table"),
     ],
 )
 def test_scripts_run(script: str, arguments: str, expected: str, tmp_path: Path) -> None:

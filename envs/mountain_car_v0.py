@@ -14,7 +14,7 @@ from itertools import compress
 from typing import Any, ClassVar
 
 import numpy as np
-from gymnasium import logger, spaces
+from gymnasium import spaces
 from numpy.typing import NDArray
 from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
@@ -22,7 +22,7 @@ from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 from envs.checks import choice, instance, integer
 from envs.fleet import make_fleet
 from envs.hill import Hill, State
-from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Image, Window, picture, text
+from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Rendered
 from envs.starts import checked_state
 from envs.streams import stream
 
@@ -42,7 +42,7 @@ def raw_env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
     return parallel_to_aec(parallel_env(**arguments))
 
 
-class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  # the base is untyped
+class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignore[misc]  # the base is untyped
     """Several cars that drive at the same time and do not touch each other.
 
     Args:
@@ -95,7 +95,6 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         self._live: list[int] = []  # numbers of ``agents`` among ``possible_agents``
         self._streams: dict[str, np.random.Generator] = {}
         self._steps = 0
-        self._window: Window | None = None
         self.state_space = spaces.Box(
             np.tile(low, len(self.possible_agents)),
             np.tile(high, len(self.possible_agents)),
@@ -130,7 +129,7 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
         for number, car in enumerate(self.agents):
             start = given.get(car, together)
             self._fleet.put(number, start or self.hill.reset(self._streams[car]))
-        self._follow()
+        self.follow()
         observations = self._fleet.observe(self._live)
         return dict(zip(self.agents, observations, strict=True)), {car: {} for car in self.agents}
 
@@ -160,7 +159,7 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
             goes_on = [not (late or there) for there in terminated]
             self._live = list(compress(self._live, goes_on))
             self.agents = list(compress(cars, goes_on))
-        self._follow()
+        self.follow()
         return (
             dict(zip(cars, observations, strict=True)),
             dict(zip(cars, rewards, strict=True)),
@@ -181,36 +180,10 @@ class parallel_env(ParallelEnv[str, Observation, int]):  # type: ignore[misc]  #
             raise ValueError("state is there after the first reset, not before")
         return np.array(self._fleet.states()).ravel()
 
-    def render(self) -> Image | str | None:
-        """What the cars are doing, in the render mode: a picture, a text, or None."""
-        if self.render_mode is None:
-            logger.warn("render is called without a render_mode; give one to parallel_env")
-            return None
+    def shown(self) -> tuple[dict[str, State], int]:
+        """The cars that there are after a reset, the ended ones included."""
         there = self._fleet.states() if self._streams else []
-        cars = dict(zip(self.possible_agents, there))
-        if self.render_mode == "ansi":
-            return text(cars, self._steps)
-        image = picture(self.hill, cars, self._steps)
-        if self.render_mode == "rgb_array":
-            return image
-        self._window = self._window or Window(self.metadata["name"])
-        self._window.show(image)
-        return None
-
-    def close(self) -> None:
-        """Close the window, if there is one."""
-        if self._window:
-            self._window.close()
-            self._window = None
-
-    def __getstate__(self) -> dict[str, Any]:
-        """All but the window: a copy is in the middle of the same episode, and opens its own."""
-        return self.__dict__ | {"_window": None}
-
-    def _follow(self) -> None:
-        """Keep the window up to date."""
-        if self.render_mode == "human":
-            self.render()
+        return dict(zip(self.possible_agents, there)), self._steps
 
     def _reseed(self, seed: int | None) -> None:
         master = np.random.SeedSequence(None if seed is None else integer("seed", seed, 0))

@@ -168,3 +168,50 @@ class Window:
     def close(self) -> None:
         """Close the window."""
         self._pygame.display.quit()
+
+
+class Rendered:
+    """What environments that render have in common: first of their bases.
+
+    They set ``hill`` and ``render_mode``, and call ``follow`` after each reset and step.
+    """
+
+    hill: Hill
+    render_mode: str | None
+    _window: Window | None = None
+
+    def shown(self) -> tuple[dict[str, State], int]:
+        """The cars by name, and their steps."""
+        raise NotImplementedError
+
+    def render(self) -> Image | str | None:
+        """What the cars are doing, in the render mode: a picture, a text, or None."""
+        if self.render_mode is None:
+            from gymnasium import logger
+
+            logger.warn("render is called without a render_mode; give one when the environment is made")
+            return None
+        cars, steps = self.shown()
+        if self.render_mode == "ansi":
+            return text(cars, steps)
+        image = picture(self.hill, cars, steps)
+        if self.render_mode == "rgb_array":
+            return image
+        self._window = self._window or Window("Mountain Car")
+        self._window.show(image)
+        return None
+
+    def follow(self) -> None:
+        """Keep the window up to date, if that is the render mode."""
+        if self.render_mode == "human":
+            self.render()
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        if self._window:
+            self._window.close()
+            self._window = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the window: a copy is in the middle of the same episode, and opens its own."""
+        return self.__dict__ | {"_window": None}

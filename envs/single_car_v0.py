@@ -9,12 +9,12 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium import logger, spaces
+from gymnasium import spaces
 from numpy.typing import NDArray
 
 from envs.checks import choice, instance, integer
 from envs.hill import Hill, State
-from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Image, Window, picture, text
+from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Rendered
 from envs.starts import start_state
 
 __all__ = ["SingleCarEnv"]
@@ -22,7 +22,7 @@ __all__ = ["SingleCarEnv"]
 Observation = NDArray[np.float32]
 
 
-class SingleCarEnv(gymnasium.Env[Observation, np.int64]):
+class SingleCarEnv(Rendered, gymnasium.Env[Observation, np.int64]):
     """A car that is to reach the goal.
 
     | | |
@@ -56,7 +56,6 @@ class SingleCarEnv(gymnasium.Env[Observation, np.int64]):
         self.action_space = spaces.Discrete(hill.n_actions)
         self._state: State | None = None
         self._steps = 0
-        self._window: Window | None = None
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
@@ -74,7 +73,7 @@ class SingleCarEnv(gymnasium.Env[Observation, np.int64]):
         super().reset(seed=seed)
         self._state = start_state(self.hill, self.np_random, options)
         self._steps = 0
-        self._follow()
+        self.follow()
         return np.array(self._state, np.float32), {}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -90,35 +89,9 @@ class SingleCarEnv(gymnasium.Env[Observation, np.int64]):
             raise ValueError(f"action must be less than {self.hill.n_actions}, got {action}")
         self._state, reward, terminated = self.hill.step(self._state, chosen)
         self._steps += 1
-        self._follow()
+        self.follow()
         return np.array(self._state, np.float32), reward, terminated, False, {}
 
-    def render(self) -> Image | str | None:
-        """What the car is doing, in the render mode: a picture, a text, or None."""
-        if self.render_mode is None:
-            logger.warn("render is called without a render_mode; give one to gymnasium.make")
-            return None
-        cars = {} if self._state is None else {"car": self._state}
-        if self.render_mode == "ansi":
-            return text(cars, self._steps)
-        image = picture(self.hill, cars, self._steps)
-        if self.render_mode == "rgb_array":
-            return image
-        self._window = self._window or Window("MountainCar-v0")
-        self._window.show(image)
-        return None
-
-    def close(self) -> None:
-        """Close the window, if there is one."""
-        if self._window:
-            self._window.close()
-            self._window = None
-
-    def __getstate__(self) -> dict[str, Any]:
-        """All but the window: a copy is in the middle of the same episode, and opens its own."""
-        return self.__dict__ | {"_window": None}
-
-    def _follow(self) -> None:
-        """Keep the window up to date."""
-        if self.render_mode == "human":
-            self.render()
+    def shown(self) -> tuple[dict[str, State], int]:
+        """The car, if there was a reset."""
+        return ({} if self._state is None else {"car": self._state}), self._steps

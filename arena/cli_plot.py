@@ -9,7 +9,7 @@ import typer
 
 from arena.cli_results import By, File
 from arena.results import Results, load
-from envs.checks import choice
+from envs.checks import choice, integer
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,13 +51,15 @@ def plot(
             "--out", "-o", help="File that ends in .png, .svg or .pdf; by default KIND.png.", metavar="FILE"
         ),
     ] = None,
+    dpi: Annotated[int, typer.Option(help="Dots an inch of a .png.", metavar="N")] = 150,
 ) -> None:
     """Draw a figure of the paper, or one beyond it, from a results file."""
     out = out or Path(f"{kind.value}.png")
     choice("suffix of --out", out.suffix.lower(), SUFFIXES)
+    integer("--dpi", dpi, 20)
     with load(file) as results:
         figure = _DRAW[kind](results, entrant, replicate, by.value)
-    figure.savefig(out, dpi=150, metadata={"Date": None} if out.suffix.lower() == ".svg" else None)
+    figure.savefig(out, dpi=dpi, metadata={"Date": None} if out.suffix.lower() == ".svg" else None)
     print(out)
 
 

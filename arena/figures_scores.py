@@ -68,7 +68,7 @@ def improvement(scores: Scores, by: str) -> NDArray[np.float64]:
     Shape (entrants, entrants); the values of ``arena.statistics.probability_of_improvement``.
     """
     costs = scores.costs(by)
-    found = [[0.5 - 0.5 * np.sign(a[:, None] - b[None, :]).mean() for b in costs] for a in costs]
+    found = [0.5 - 0.5 * np.sign(row[:, None] - costs[:, None, :]).mean(axis=(1, 2)) for row in costs]
     return np.array(found)
 
 
@@ -82,7 +82,15 @@ def draw_pairs(scores: Scores, board: Leaderboard, axes: "Axes | None" = None) -
     mesh = axes.pcolormesh(cell_edges(count), cell_edges(count), matrix, cmap=BETTER, vmin=0.0, vmax=1.0)
     apart = np.argwhere(at_most(np.array(board.p_values), 1.0 - board.confidence))
     if count <= _READABLE:
-        axes.plot(apart[:, 1], apart[:, 0], ".", color="#FFFFFF", markersize=4, markeredgecolor="#000000")
+        axes.plot(
+            apart[:, 1],
+            apart[:, 0],
+            "o",
+            color="#FFFFFF",
+            markersize=3,
+            markeredgecolor="#000000",
+            markeredgewidth=0.3,
+        )
     _name_rows(axes, names)
     axes.set_xticks(np.arange(count), names, rotation=90, parse_math=False)
     axes.set_title(f"By {board.by}: is a run of the row better than one of the column?")
@@ -131,6 +139,7 @@ def draw_regret(
         xlabel="start of the drive (position, units of length)", ylabel="steps beyond the fewest possible"
     )
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    axes.locator_params(axis="x", nbins=6)
     axes.set_title(f"Regret by start, replicate {replicate}{told}")
     axes.grid(alpha=0.3)
     axes.figure.legend(loc="outside right center", frameon=False, markerscale=2)

@@ -1,5 +1,6 @@
 """``arena plot``, as users run it."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -53,6 +54,26 @@ def test_the_suffix_says_which_format(suffix: str, begins: bytes) -> None:
     assert Path(f"figure.{suffix}").read_bytes().startswith(begins)
 
 
+def test_the_size_is_chosen() -> None:
+    sizes = []
+    for dpi in ("50", "100"):
+        assert main(["plot", "race.sqlite", "sweep", "--dpi", dpi, "-o", "sized.png"]) == 0
+        with Image.open("sized.png") as image:
+            sizes.append(image.width)
+    assert sizes == [600, 1200]
+
+
+def test_the_gallery_shows_every_kind_and_the_command_that_makes_it() -> None:
+    text = (Path(__file__).parent.parent / "docs" / "gallery.md").read_text()
+    shown = re.findall(
+        r"^!\[.*\]\((.*)\)\n\n```console\n\$ arena (plot|race) .* -o docs/(.*)$", text, re.MULTILINE
+    )
+    assert all(picture == made for picture, _, made in shown)
+    kinds = re.findall(r"^\$ arena plot \S+ (\w+) ", text, re.MULTILINE)
+    assert sorted(kinds) == sorted(Kind)
+    assert len(shown) == len(kinds) + 1  # and the race
+
+
 def test_entrants_and_replicates_are_chosen() -> None:
     drawn = set()
     for options in ([], ["--entrant", "sarsa"], ["--entrant", "sarsa", "--replicate", "1"]):
@@ -79,6 +100,7 @@ def test_entrants_and_replicates_are_chosen() -> None:
         ("race.sqlite pairs --entrant sarsa", "--entrant must be left out of a picture of all entrants"),
         ("race.sqlite learning --entrant nobody", "entrant must be one of finer, momentum, random, sarsa"),
         ("race.sqlite regret --replicate 7", "replicate must be one that"),
+        ("race.sqlite sweep --dpi 19", "--dpi must be at least 20, got 19"),
         ("failed.sqlite learning", "no run has finished: there is nothing to draw"),
         ("failed.sqlite policy --entrant a", "replicate 0 of 'a' failed: there is nothing to draw"),
         ("failed.sqlite learning --entrant a", "'a' has no finished run: there is no learning curve"),

@@ -56,6 +56,7 @@ def print_results(
     """What ``arena run`` and ``arena show`` print on stdout."""
     from arena.comparison import compare as paper_s
     from arena.leaderboard import leaderboard
+    from arena.sparklines import can_show, pictures
     from arena.tables import render
 
     if as_json:
@@ -66,7 +67,10 @@ def print_results(
     elif as_csv:
         leaderboard(results, by or "steps", confidence).frame().to_csv(sys.stdout, index=False)
     else:
-        Console(highlight=False, soft_wrap=True).print(render(results, by, confidence))
+        console = Console(highlight=False, soft_wrap=True)
+        console.print(render(results, by, confidence))
+        if can_show(console):
+            console.print(pictures(results))
 
 
 def compare(

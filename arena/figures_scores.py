@@ -39,7 +39,7 @@ def draw_intervals(board: Leaderboard, axes: "Axes | None" = None) -> "Axes":
         beyond = np.nan_to_num([value - low, high - value])
         style: dict[str, Any] = {"color": color, "marker": marker, "markersize": 4, "linestyle": "none"}
         axes.errorbar(value, rows + offset, xerr=beyond, capsize=2, label=label, **style)
-    axes.set_yticks(rows, [f"{one.entrant}  {_place(one)}" for one in board.standings], parse_math=False)
+    axes.set_yticks(rows, [f"{one.entrant}  {one.places}" for one in board.standings], parse_math=False)
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xlabel(SCORES[board.by].words)
     axes.set_title(f"{100.0 * board.confidence:g}% intervals, {board.replicates} replicates; with places")
@@ -144,10 +144,6 @@ def draw_regret(
     axes.grid(alpha=0.3)
     axes.figure.legend(loc="outside right center", frameon=False, markerscale=2)
     return axes
-
-
-def _place(one: Any) -> str:
-    return f"{one.place}" if one.place == one.last_place else f"{one.place}-{one.last_place}"
 
 
 def cell_edges(count: int) -> NDArray[np.float64]:

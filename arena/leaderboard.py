@@ -41,6 +41,11 @@ class Standing:
     tied: tuple[str, ...]
     failed: int
 
+    @property
+    def places(self) -> str:
+        """The places that chance leaves it, such as ``2-4``."""
+        return f"{self.place}" if self.place == self.last_place else f"{self.place}-{self.last_place}"
+
 
 @dataclass(frozen=True)
 class Leaderboard:

@@ -108,7 +108,7 @@ def _rows(results: Results, board: Leaderboard) -> Iterator[dict[str, Any]]:
             numbers.append((value, told))
         yield {
             "order": order,
-            "place": f"{one.place}" if one.place == one.last_place else f"{one.place}-{one.last_place}",
+            "place": one.places,
             "entrant": one.entrant,
             "agent": agents[one.entrant],
             "numbers": [*numbers, (one.failed, str(one.failed))],

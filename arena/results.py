@@ -110,6 +110,11 @@ class Results:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def _repr_html_(self) -> str:
+        from arena.notebooks import results_html
+
+        return results_html(self)
+
     def __repr__(self) -> str:
         config = self.config
         most = config["max_replicates"] if config["replicates"] == ADAPTIVE else config["replicates"]

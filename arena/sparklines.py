@@ -30,7 +30,7 @@ def sparkline(values: ArrayLike, low: float, high: float, width: int = _WIDTH) -
 
 
 def pictures(results: Results) -> RenderableType:
-    """Learning curves of the best entrants, on one logarithmic scale, and the policy of the first of them; or nothing."""
+    """Learning curves of the best, on one logarithmic scale, and the policy of the first; or nothing."""
     try:
         names = best_entrants(results, _BEST)
         curves = {name: reward_curves(results, name).mean(axis=0) for name in names}

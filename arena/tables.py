@@ -71,10 +71,9 @@ def _leaderboard(board: Leaderboard) -> Table:
     for name in (board.by, *others):
         table.add_column(_HEADERS[name], justify="right", no_wrap=True)
     for one in board.standings:
-        place = str(one.place) if one.place == one.last_place else f"{one.place}-{one.last_place}"
         decisive = one.scores[board.by]
         table.add_row(
-            place,
+            one.places,
             Text(one.entrant),
             _interval(decisive.value, decisive.high - decisive.value, decimals(board.by)),
             *(_interval(one.scores[name].value, math.nan, decimals(name)) for name in others),

@@ -198,6 +198,11 @@ class Tournament:
         """All runs that there may be, replicate by replicate."""
         return tuple(Run(e, r) for r in range(self.most_replicates) for e in self.entrants)
 
+    def _repr_html_(self) -> str:
+        from arena.notebooks import tournament_html
+
+        return tournament_html(self)
+
     def to_dict(self) -> dict[str, Any]:
         """All of it as plain values; two tournaments are the same if these are equal."""
         return {

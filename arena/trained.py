@@ -58,6 +58,11 @@ class Trained:
         """
         return drive(self.hill, self.agent, position, self.conditions.evaluation.max_steps)
 
+    def _repr_html_(self) -> str:
+        from arena.notebooks import trained_html
+
+        return trained_html(self)
+
 
 def drive(hill: Hill, agent: Any, position: float, limit: int) -> NDArray[np.float64]:
     """A drive by ``agent.greedy`` from rest at ``position``, until the goal or for ``limit`` steps.

@@ -46,6 +46,7 @@ def test_a_terminal_shows_curves_and_the_best_policy(
 
 def test_the_blocks_are_the_policy(file: Path) -> None:
     with load(file) as results:
+        _, *momentum = blocks(trained(results, "momentum"))
         agent = trained(results, "sarsa")
         best = results.arrays("sarsa")["values"].argmax(axis=1).reshape(6, 7)
     _, *lines = blocks(agent)
@@ -53,6 +54,8 @@ def test_the_blocks_are_the_policy(file: Path) -> None:
     for column in (0, 30, 53):
         assert str(lines[0].spans[column].style).split(" on ")[0] == top[best[column * 6 // 54, -1]]
         assert str(lines[-1].spans[column].style).split(" on ")[1] == top[best[column * 6 // 54, 0]]
+    assert {str(momentum[k].spans[0].style) for k in (0, 5)} == {f"{top[2]} on {top[2]}"}
+    assert {str(momentum[k].spans[0].style) for k in (6, 11)} == {f"{top[0]} on {top[0]}"}
     assert len({tuple(str(span.style) for span in line.spans) for line in lines}) > 1
     assert np.unique(best).size > 1
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arena.configuration import from_dict
+from agents import agent_class
+from arena.entrant import Entrant
 from arena.outcome import Arrays, agent_arrays
 from arena.results import Results
 from arena.tournament import Conditions, Evaluation, Run, Training
@@ -154,10 +155,9 @@ def best_entrants(results: Results, count: int) -> list[str]:
 
 def _made_again(results: Results, entrant: str, replicate: int, conditions: Conditions) -> Any:
     """The agent before it has learned anything."""
-    tables = [one for one in results.config["entrants"] if one["name"] == entrant]
+    table = next(one for one in results.config["entrants"] if one["name"] == entrant)
     try:
-        tournament = from_dict({**results.config, "entrants": tables, "replicates": replicate + 1})
-        run = Run(tournament.entrants[0], replicate)
+        run = Run(Entrant(entrant, agent_class(table["agent"]), **table["parameters"]), replicate)
         return run.entrant.create(conditions.hill, stream(conditions.seed, "create", run.identity))
     except Exception as error:  # of any kind: the agent's code is anybody's
         reason = " ".join(str(error).split())

@@ -182,6 +182,7 @@ def test_the_page_shows_what_the_command_prints(capsys: pytest.CaptureFixture[st
     assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == example[2]
 
 
+@pytest.mark.slow
 def test_the_page_on_physics_shows_what_the_script_prints() -> None:
     command = [sys.executable, str(ROOT / "scripts" / "energies.py"), "--out", "energies.png"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout

@@ -114,9 +114,19 @@ def test_every_reading_is_documented() -> None:
         ("grids_of_one_algorithm.py", "--episodes 5 --replicates 1 --bins 4 5 --jobs 1", "(5, 4)"),
         ("algorithms_on_one_grid.py", "--episodes 5 --replicates 2 --bins 4 4 --jobs 2", "momentum"),
         ("bench_learning.py", "--episodes 30 --repeats 1", "QLearning: "),
-        ("bench_walk.py", "--episodes 2 --part 1 --repeats 1", "million steps a second"),
+        pytest.param(
+            "bench_walk.py",
+            "--episodes 2 --part 1 --repeats 1",
+            "million steps a second",
+            marks=pytest.mark.slow,
+        ),
         ("measured_coverage.py", "--trials 3 --parts mean", "| mean, Student's t | normal | 5 | 95.0% |"),
-        ("fit_of_readings.py", "--replicates 2 --readings literal --jobs 2", "| `literal` | zero table"),
+        pytest.param(
+            "fit_of_readings.py",
+            "--replicates 2 --readings literal --jobs 2",
+            "| `literal` | zero table",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_scripts_run(script: str, arguments: str, expected: str, tmp_path: Path) -> None:

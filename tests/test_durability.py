@@ -60,6 +60,7 @@ def test_killed_at_twenty_random_moments_and_continued_the_digest_is_that_of_an_
 
 @POSIX
 @pytest.mark.usefixtures("interruptible")
+@pytest.mark.slow
 def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
     Path("race.toml").write_text(RACE.replace("replicates = 8", "replicates = 60"))
     process = start("--seed", "3")
@@ -80,6 +81,7 @@ def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
     assert process.wait(120) == 0
 
 
+@pytest.mark.slow
 def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
     Path("race.toml").write_text(RACE.replace("replicates = 8", "replicates = 300"))
     process = start()
@@ -93,6 +95,7 @@ def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
     process.wait(10)
 
 
+@pytest.mark.slow
 def test_digests_ignore_what_may_differ_and_nothing_else(
     race: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -177,13 +177,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except Exception as error:
         if hasattr(error, "format_message"):  # a mistake in the command line itself
-            _say(" ".join(error.format_message().split()))
+            _say(" ".join(error.format_message().split()) + _received(error, arguments))
         elif isinstance(error, (ValueError, TypeError, OSError)):
             _say(" ".join(str(error).split()))
         else:
             raise
         return BAD_INPUT
     return code if isinstance(code, int) else 0
+
+
+def _received(error: Any, arguments: Sequence[str] | None) -> str:
+    """The value of the option that is wrong, where the message does not tell it."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    options = getattr(getattr(error, "param", None), "opts", ())
+    for place, one in enumerate(given):
+        name, equals, value = one.partition("=")
+        if name in options:
+            value = value if equals else "".join(given[place + 1 : place + 2])
+            return "" if repr(value) in error.format_message() else f", got {value!r}"
+    return ""
 
 
 def _default_file(name: str) -> Path:

@@ -118,7 +118,11 @@ def test_a_small_paper_prints_both_tables(race: str, capsys: pytest.CaptureFixtu
         (["run", "unknown.toml"], "unknown.toml: agent must be one of"),
         (["run", "nan.toml"], "nan.toml: mass must be a finite number greater than 0, got nan"),
         (["run", "race.toml", "--jobs", "0"], "--jobs must not be 0"),
-        (["run", "race.toml", "--jobs", "two"], "Invalid value for '--jobs'"),
+        (
+            ["run", "race.toml", "--jobs", "two"],
+            "parse string as an integer, got 'two'",
+        ),
+        (["run", "race.toml", "--jobs=a"], "parse string as an integer, got 'a'"),
         (["run", "race.toml", "--replicates", "0"], "race.toml: replicates must be at least 1, got 0"),
         (["run", "race.toml", "--seed", "-1"], "race.toml: seed must be at least 0, got -1"),
         (["run", "race.toml", "--driver", "fast"], "Invalid value for '--driver'"),

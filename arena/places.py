@@ -105,15 +105,29 @@ def rank_distribution(costs: ArrayLike, seed: int = 0) -> Floats:
     """
     values = np.asarray(costs, dtype=float)
     entrants, count = values.shape
-    shares = np.zeros((entrants, entrants))
     drawn = np.random.default_rng(seed).integers(count, size=(RESAMPLES, count))
     means = np.stack([row[drawn].mean(axis=1) for row in values])
-    places = np.arange(entrants)[:, None]
-    for i, mean in enumerate(means):
-        before, level = (means < mean).sum(axis=0), (means == mean).sum(axis=0)
-        taken = (places >= before) & (places < before + level)
-        shares[i] = (taken / level).mean(axis=1)
-    return shares
+    order = np.argsort(means, axis=0, kind="stable")
+    ordered = np.take_along_axis(means, order, axis=0)
+    first, last = _runs(ordered)
+    share = 1.0 / (last - first + 1)  # of each place from the first to the last of its equals
+    changes = np.zeros(entrants * (entrants + 1))
+    for place, sign in ((first, 1.0), (last + 1, -1.0)):
+        changes += sign * np.bincount((order * (entrants + 1) + place).ravel(), share.ravel(), len(changes))
+    taken = changes.reshape(entrants, entrants + 1)[:, :-1].cumsum(axis=1)
+    found: Floats = np.round(taken / RESAMPLES, 12) + 0.0  # what rounding left of nothing is nothing
+    return found
+
+
+def _runs(ordered: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """For each value of ascending columns, the first and the last row of its equals."""
+    rows = np.arange(len(ordered))[:, None]
+    changes = ordered[1:] != ordered[:-1]
+    begins = np.vstack([np.ones((1, ordered.shape[1]), np.bool_), changes])
+    ends = np.vstack([changes, np.ones((1, ordered.shape[1]), np.bool_)])
+    first = np.maximum.accumulate(np.where(begins, rows, 0), axis=0)
+    last = np.minimum.accumulate(np.where(ends, rows, len(ordered))[::-1], axis=0)[::-1]
+    return first, last
 
 
 @dataclass(frozen=True)

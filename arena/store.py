@@ -92,7 +92,8 @@ class Store:
                 path.with_name(f"{path.name}.new").unlink(missing_ok=True)
             # Under another name until it is whole: a process may be killed at any moment.
             new = path.with_name(f"{path.name}.new") if path else ""
-            with closing(sqlite3.connect(new)) if path else nullcontext(sqlite3.connect("")) as connection:
+            opened = sqlite3.connect(new, check_same_thread=False)  # see ``_open``
+            with closing(opened) if path else nullcontext(opened) as connection:
                 connection.executescript(_SCHEMA)
                 connection.executemany("INSERT INTO tournament VALUES (?, ?)", rows)
                 connection.commit()
@@ -146,7 +147,9 @@ class Store:
         uri = f"file:{urllib.parse.quote(str(path.absolute()))}?mode={mode}"
         store = None
         try:
-            store = cls(sqlite3.connect(uri, uri=True, isolation_level=None), path)
+            # Results that are dropped are closed by whichever thread collects them.
+            connection = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
+            store = cls(connection, path)
             store._check()
         except (sqlite3.Error, ResultsError) as error:
             if store:

@@ -1,12 +1,14 @@
 """The results file and what is read back from it."""
 
 import contextlib
+import gc
 import io
 import json
 import math
 import sqlite3
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -271,3 +273,22 @@ def test_names_and_errors_cannot_command_the_terminal(file: Path) -> None:
     connection.close()
     with pytest.raises(ValueError, match=r"small.sqlite is damaged: its tournament is incomplete"):
         load(file)
+
+
+@pytest.mark.filterwarnings("error")
+def test_results_are_read_and_dropped_in_any_thread(file: Path, small: Tournament) -> None:
+    made = [load(file), run(small, n_jobs=1)]  # a file's, and those that are nowhere else
+    seen: list[int] = []
+
+    def use() -> None:
+        while made:
+            results = made.pop()
+            seen.append(len(results.runs))
+            del results
+            gc.collect()
+
+    thread = threading.Thread(target=use)
+    thread.start()
+    thread.join()
+    assert len(seen) == 2
+    assert min(seen) > 0

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
 from arena.adaptive import ADAPTIVE
 from arena.builtin import BUILT_IN
@@ -25,6 +24,7 @@ from arena.cli_results import add_commands as add_result_commands
 from arena.cli_results import print_results
 from arena.cli_walk import add_commands as add_walk_command
 from arena.configuration import load_tournament
+from arena.progress import progress_bar
 from arena.results import Results, load
 from arena.runner import run as run_tournament
 from arena.tournament import Tournament
@@ -215,18 +215,8 @@ def _tournament(name: str, changes: dict[str, Any]) -> Tournament:
 
 
 def _run(tournament: Tournament, out: Path, jobs: int, driver: str) -> Results:
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task(tournament.name, total=None)
-        return run_tournament(
-            tournament,
-            out,
-            jobs,
-            driver,
-            progress=lambda finished, total: bar.update(task, completed=finished, total=total),
-        )
+    with progress_bar(tournament.name) as progress:
+        return run_tournament(tournament, out, jobs, driver, progress=progress)
 
 
 def _write_page(results: Results, page: Path) -> None:

@@ -27,6 +27,7 @@ def curves(
     as_csv: Annotated[bool, typer.Option("--csv", help="Print a line a run, with commas.")] = False,
 ) -> None:
     """Print how fast entrants learn: the area under the curves, and when they stay below a level."""
+    from arena.comparison import without_nan
     from arena.curves import learning_curves
     from arena.leaderboard import check_confidence
     from arena.statistics import mean_interval
@@ -46,32 +47,34 @@ def curves(
         rows.append(
             {
                 "entrant": str(entrant),
-                "area": _none(area),
-                "area_error": _none(error),
+                "area": area,
+                "area_error": error,
                 "settled": len(settled),
                 "replicates": len(runs),
-                "median_episode": float(settled.median()) if len(settled) else None,
+                "median_episode": float(settled.median()) if len(settled) else math.nan,
             }
         )
-    rows.sort(key=lambda row: math.inf if row["area"] is None else row["area"])
+    rows.sort(key=lambda row: math.inf if math.isnan(row["area"]) else row["area"])
     if as_json:
-        print(json.dumps({"level": level, "window": window, "entrants": rows}, allow_nan=False))
+        told = {"level": level, "window": window, "entrants": without_nan(rows)}
+        print(json.dumps(told, allow_nan=False))
         return
     _print(rows, level, window, confidence)
 
 
 def _print(rows: list[dict[str, Any]], level: float, window: int, confidence: float) -> None:
+    from arena.tables import interval_text
+
     table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
     table.add_column("entrant", overflow="fold")
     for name in ("area", "settled", "episode"):
         table.add_column(name, justify="right", no_wrap=True)
     for row in rows:
-        error = "" if row["area_error"] is None else f" ± {row['area_error']:,.1f}"
         table.add_row(
             Text(row["entrant"]),
-            "-" if row["area"] is None else f"{row['area']:,.1f}{error}",
+            interval_text(row["area"], row["area_error"], 1),
             f"{row['settled']} of {row['replicates']}",
-            "-" if row["median_episode"] is None else f"{row['median_episode']:,.0f}",
+            interval_text(row["median_episode"], math.nan, 0),
         )
     console = Console(highlight=False, soft_wrap=True)
     console.print(table)
@@ -81,10 +84,6 @@ def _print(rows: list[dict[str, Any]], level: float, window: int, confidence: fl
         f"settled: replicates whose moving average stays at or below {level:g} steps in the end; "
         "episode: the median of those from which on it does."
     )
-
-
-def _none(value: float) -> float | None:
-    return None if math.isnan(value) else value
 
 
 def add_commands(app: typer.Typer) -> None:

@@ -144,7 +144,7 @@ _DRAW: dict[Kind, Callable[..., "Figure"]] = {
 
 def _figure_of(drawn: "Axes | Figure") -> "Figure":
     """The figure of axes; a figure itself."""
-    figure: Figure = drawn if hasattr(drawn, "savefig") else drawn.figure  # type: ignore[assignment]
+    figure: Figure = drawn if hasattr(drawn, "savefig") else drawn.figure  # type: ignore[assignment]  # no SubFigure
     return figure
 
 

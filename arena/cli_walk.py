@@ -9,12 +9,12 @@ from typing import Annotated
 import typer
 from rich import box
 from rich.console import Console, Group, RenderableType
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
 
 from arena.distributions import BOOTSTRAPS
 from arena.hills import find_hill
+from arena.progress import progress_bar
 from arena.walk_study import PAPER, REASONABLE, Summary, WalkStudy, study
 from arena.walks import InterruptedWalk, RandomWalk, random_walk
 from envs import Hill, Integrator
@@ -91,26 +91,15 @@ def _walks(
     hills: list[Hill], episodes: int, seed: int, jobs: int, max_steps: int
 ) -> tuple[list[RandomWalk], str]:
     """Walks on each hill, as far as they were finished; and why they were not."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     walks: list[RandomWalk] = []
-    with Progress(*columns, console=Console(stderr=True), disable=not sys.stderr.isatty()) as bar:
-        for hill in hills:
-            task = bar.add_task(hill.integrator.label, total=episodes)
-            try:
-                walks.append(
-                    random_walk(
-                        episodes,
-                        hill,
-                        seed,
-                        jobs,
-                        max_steps,
-                        progress=lambda done, _, task=task: bar.update(task, completed=done),  # type: ignore[misc]
-                    )
-                )
-            except InterruptedWalk as stop:
-                if len(stop.walk.lengths):
-                    walks.append(stop.walk)
-                return walks, f"{stop} ({hill.integrator.label})"
+    for hill in hills:
+        try:
+            with progress_bar(hill.integrator.label) as progress:
+                walks.append(random_walk(episodes, hill, seed, jobs, max_steps, progress=progress))
+        except InterruptedWalk as stop:
+            if len(stop.walk.lengths):
+                walks.append(stop.walk)
+            return walks, f"{stop} ({hill.integrator.label})"
     return walks, ""
 
 

@@ -38,20 +38,29 @@ def load_tournament(path: str | Path, **changes: Any) -> Tournament:
         TypeError, ValueError: when the file cannot be read or breaks a rule; the message names it.
     """
     path = Path(path)
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise ValueError(f"there is no tournament file {path}") from None
-    except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path} is not a TOML file: {error}") from error
+    content = read_toml(path, "tournament file")
     try:
         return from_dict({"name": path.stem, **content, **changes}, path.parent)
     except TypeError as error:
         raise TypeError(f"{path}: {error}") from error
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
+
+
+def read_toml(path: str | Path, what: str = "file") -> dict[str, Any]:
+    """What the TOML file ``path`` says.
+
+    Raises:
+        ValueError: when it cannot be read; the message names it, and says ``what`` there is not.
+    """
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ValueError(f"there is no {what} {path}") from None
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ValueError(f"{path} is not a TOML file: {error}") from error
 
 
 def from_dict(content: Mapping[str, Any], folder: Path = Path()) -> Tournament:
@@ -70,7 +79,7 @@ def from_dict(content: Mapping[str, Any], folder: Path = Path()) -> Tournament:
     kinds: dict[str, type[Any]] = {"hill": Hill, "training": Training, "evaluation": Evaluation}
     for key, kind in kinds.items():
         if key in arguments:
-            arguments[key] = _build(key, kind, arguments[key])
+            arguments[key] = build(key, kind, arguments[key])
     broken = _load_plugins(arguments.pop("plugins", []), folder)
     tables = arguments.pop("entrants", [])
     if not isinstance(tables, list):
@@ -92,7 +101,12 @@ def _load_plugins(plugins: Any, folder: Path) -> list[PluginError]:
     return broken
 
 
-def _build(name: str, kind: type[Any], table: Any) -> Any:
+def build(name: str, kind: type[Any], table: Any) -> Any:
+    """A ``kind`` from the table ``name``, whose keys are its arguments.
+
+    Raises:
+        TypeError, ValueError: when it is no table, or breaks a rule.
+    """
     if not isinstance(table, Mapping):
         raise TypeError(f"{name} must be a table, got {table!r}")
     known = getattr(kind, "_fields", None) or tuple(kind.__dataclass_fields__)

@@ -5,12 +5,13 @@ A picture brings its own white paper, so that it can be read on a dark page, too
 
 from typing import TYPE_CHECKING
 
+from envs.rendering import PALETTE
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-YELLOW, BLUE, RED, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
-LINES = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK)
+BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK, YELLOW = PALETTE
+LINES = PALETTE[:-1]
 """Okabe and Ito (2008), without the yellow, which is too faint for a line."""
 
 DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), "-")

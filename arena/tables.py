@@ -75,8 +75,8 @@ def _leaderboard(board: Leaderboard) -> Table:
         table.add_row(
             one.places,
             Text(one.entrant),
-            _interval(decisive.value, decisive.high - decisive.value, decimals(board.by)),
-            *(_interval(one.scores[name].value, math.nan, decimals(name)) for name in others),
+            interval_text(decisive.value, decisive.high - decisive.value, decimals(board.by)),
+            *(interval_text(one.scores[name].value, math.nan, decimals(name)) for name in others),
         )
     return table
 
@@ -126,14 +126,14 @@ def _paper(comparison: Comparison) -> RenderableType:
         bins = f"{cell.position_bins} x {cell.velocity_bins}"
         first.add_row(
             bins,
-            _interval(*cell.accuracy, 2),
+            interval_text(*cell.accuracy, 2),
             f"{cell.paper_accuracy:.2f}",
-            _interval(*cell.mean_length, 2),
+            interval_text(*cell.mean_length, 2),
             f"{cell.paper_mean_length:.2f}",
         )
         second.add_row(
             bins,
-            _interval(*cell.iterations, 0),
+            interval_text(*cell.iterations, 0),
             f"{cell.paper_iterations:,.0f}",
             f"{100.0 * (cell.iterations[0] / cell.paper_iterations - 1.0):+.1f}%",
         )
@@ -163,7 +163,8 @@ def _table(title: str, *columns: str) -> Table:
     return table
 
 
-def _interval(mean: float, half: float, places: int) -> str:
+def interval_text(mean: float, half: float, places: int) -> str:
+    """``mean ± half``; a NaN is left out, without a mean it is a dash."""
     if math.isnan(mean):
         return "-"
     return f"{mean:,.{places}f}" + ("" if math.isnan(half) else f" ± {half:,.{places}f}")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 RENDER_MODES = ("human", "rgb_array", "ansi")
 FRAMES_PER_SECOND = 30
 SIZE = (600, 400)
-_PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 """Okabe and Ito's colours, which the colour-blind can tell apart."""
 
 _GROUND, _SKY, _INK, _FLAG = "#DAD7CD", "#FFFFFF", "#222222", "#2B6E2B"
@@ -51,7 +51,7 @@ def picture(hill: Hill, cars: Mapping[str, State], steps: int) -> Image:
     canvas = empty.copy()
     draw = ImageDraw.Draw(canvas)
     for number, (position, _) in enumerate(cars.values()):
-        scene.car(draw, position, _PALETTE[number % len(_PALETTE)])
+        scene.car(draw, position, PALETTE[number % len(PALETTE)])
     scene.legend(draw, list(cars), steps)
     return np.array(canvas.reduce(_FINE), np.uint8)
 
@@ -123,7 +123,7 @@ class _Scene:
         for number, name in enumerate(names[:_NAMED]):
             y = (10 + 18 * number) * _FINE
             square = [10 * _FINE, y + 2 * _FINE, 21 * _FINE, y + 13 * _FINE]
-            draw.rectangle(square, fill=_PALETTE[number % len(_PALETTE)], outline=_INK)
+            draw.rectangle(square, fill=PALETTE[number % len(PALETTE)], outline=_INK)
             draw.text((28 * _FINE, y), name, _INK, font)
         if len(names) > _NAMED:
             more = f"and {len(names) - _NAMED} more"

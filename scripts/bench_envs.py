@@ -10,6 +10,7 @@ installed; the vector environment beside Gymnasium's synchronous vector. Steps o
 import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
@@ -98,15 +99,15 @@ def main() -> None:
     print("|---:|---:|---:|---:|")
     for count in arguments.cars:
         ours, floor = compared(
-            lambda count=count: parallel(parallel_env(count, max_steps=STEPS), seconds),  # type: ignore[misc]
-            lambda count=count: parallel(BareDicts(count), seconds),  # type: ignore[misc]
+            partial(parallel, parallel_env(count, max_steps=STEPS), seconds),
+            partial(parallel, BareDicts(count), seconds),
             repeats,
         )
         print(f"| {count} | {ours:,.0f} | {floor:,.0f} | {ours / floor:.2f} |", flush=True)
     if find_spec("supersuit"):
         ours, theirs = compared(
-            lambda: parallel(parallel_env(64, max_steps=STEPS), seconds),
-            lambda: vector(super_suit(64), seconds),
+            partial(parallel, parallel_env(64, max_steps=STEPS), seconds),
+            partial(vector, super_suit(64), seconds),
             repeats,
         )
         print(f"\nparallel_env with 64 cars is {ours / theirs:.1f} times SuperSuit's vector of 64 cars.")
@@ -116,10 +117,8 @@ def main() -> None:
     print("|---:|---:|---:|---:|")
     for count in arguments.vectors:
         ours, theirs = compared(
-            lambda count=count: vector(gymnasium.make_vec("envs:arena/MountainCar-v0", count), seconds),  # type: ignore[misc]
-            lambda count=count: vector(  # type: ignore[misc]
-                gymnasium.make_vec("MountainCar-v0", count, vectorization_mode="sync"), seconds
-            ),
+            partial(vector, gymnasium.make_vec("envs:arena/MountainCar-v0", count), seconds),
+            partial(vector, gymnasium.make_vec("MountainCar-v0", count, vectorization_mode="sync"), seconds),
             repeats,
         )
         print(f"| {count} | {ours:,.0f} | {theirs:,.0f} | {ours / theirs:,.0f} |", flush=True)

@@ -127,6 +127,10 @@ def test_bad_input_is_one_line_and_exit_code_2(
     assert printed.err.count("\n") == 1
 
 
+def interrupted_at_once(*_: Any) -> Iterator[Any]:
+    raise KeyboardInterrupt
+
+
 def test_an_interruption_leaves_what_was_finished_and_says_so(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -146,10 +150,7 @@ def test_an_interruption_leaves_what_was_finished_and_says_so(
 def test_an_interruption_of_the_fits_leaves_the_walks(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(*_: Any) -> Iterator[Any]:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("arena.distributions.imap", interrupted)
+    monkeypatch.setattr("arena.distributions.imap", interrupted_at_once)
     assert main(["walk", "--hill", "near.toml", "--episodes", "20", "--jobs", "1", "--json"]) == 130
     printed = capsys.readouterr()
     assert printed.err == "arena: interrupted while distributions were fitted\n"
@@ -159,10 +160,7 @@ def test_an_interruption_of_the_fits_leaves_the_walks(
 def test_an_interruption_before_anything_was_finished(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(*_: Any) -> Iterator[Any]:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("arena.walks.imap", interrupted)
+    monkeypatch.setattr("arena.walks.imap", interrupted_at_once)
     assert main(["walk", "--episodes", "60", "--out", "walk.json"]) == 130
     printed = capsys.readouterr()
     assert (printed.out, printed.err) == ("", "arena: interrupted after 0 of 60 episodes (semi-implicit)\n")

@@ -1,13 +1,13 @@
 """Agents made again from the arrays in a results file."""
 
 from collections.abc import Iterator
-from typing import NamedTuple, Self
 
 import numpy as np
 import pytest
+from page_tournament import Broken
 
 from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
-from agents.contract import Observation, Task
+from agents.contract import Observation
 from agents.double_q_learning import DoubleQLearning
 from agents.dyna_q import DynaQ
 from agents.sarsa_lambda import SarsaLambda
@@ -30,24 +30,6 @@ class Secretive:
     def greedy(self, observation: Observation) -> int:
         right = self.steps > 0 and observation[1] >= 0.0
         return 2 if right else 0
-
-
-class Broken(NamedTuple):
-    """Raises when it is to act."""
-
-    nothing: int = 0
-
-    @classmethod
-    def create(cls, task: Task) -> Self:
-        return cls()
-
-    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
-        raise RuntimeError("ouch")
-
-    def learn(self, *transition: object) -> None: ...
-
-    def greedy(self, observation: Observation) -> int:
-        return 0
 
 
 ENTRANTS = (

@@ -1,142 +1,120 @@
-"""The states of several cars on one hill, stepped together."""
+"""The states of several cars on one hill, stepped together by one compiled loop."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from envs.compilation import CompilationError, entry_point
-from envs.hill import Hill, State
+from envs.hill import Hill
 
-COMPILED = 8
-"""From so many cars on the loop over them is compiled: below, a call of machine code takes longer."""
-
-Observation = NDArray[np.float64]
-Moved = tuple[Sequence[Observation], list[float], list[bool]]
-
-
-def make_fleet(hill: Hill, cars: int) -> "Fleet":
-    """The states of ``cars`` cars, which are to be put somewhere first."""
-    if cars >= COMPILED:
-        try:
-            return CompiledFleet(hill, cars)
-        except CompilationError:  # somebody's hill with methods beyond numba
-            pass
-    return Fleet(hill, cars)
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 
 class Fleet:
-    """Cars by number, stepped by Python.
+    """Cars by number, some of which drive.
+
+    The loop is compiled at the first step; for a hill whose methods are beyond numba it is interpreted.
 
     Args:
         hill: what they drive on.
         cars: how many.
+
+    Attributes:
+        states: position and velocity of each car, shape (cars, 2); they are to be put somewhere first.
+        driving: the numbers of the cars that drive, shape (driving,); all at first.
+        actions: what these are to do, to be filled before each step, shape (driving,).
+        observations: what these observed last, shape (driving, 2). This and the following two are
+            overwritten by the next step.
+        rewards: what these got last, shape (driving,).
+        terminated: whether these have reached the goal, shape (driving,).
     """
 
     def __init__(self, hill: Hill, cars: int) -> None:
         self.hill = hill
-        self._states: list[State] = [(np.nan, np.nan)] * cars
+        self.states = np.full((cars, 2), np.nan)
+        self._count = np.array([cars])
+        self._numbers, self._actions = np.arange(cars), np.zeros(cars, np.int64)
+        self._observations, self._rewards = np.empty((cars, 2)), np.empty(cars)
+        self._terminated = np.empty(cars, np.bool_)
+        self._next: Callable[[], int] | None = None
+        self.drive(range(cars))
 
-    def put(self, car: int, state: State) -> None:
-        """Put a car somewhere."""
-        self._states[car] = state
+    def drive(self, cars: Sequence[int] | Integers) -> None:
+        """Let these cars drive from now on, and no others."""
+        count = self._count[0] = len(cars)
+        self._numbers[:count] = cars
+        self.driving, self.actions = self._numbers[:count], self._actions[:count]
+        self.observations, self.rewards = self._observations[:count], self._rewards[:count]
+        self.terminated = self._terminated[:count]
 
-    def states(self) -> list[State]:
-        """Position and velocity of each car."""
-        return self._states
-
-    def observe(self, cars: list[int]) -> Sequence[Observation]:
-        """What these cars observe, an array each."""
-        return [np.array(self.hill.observe(self._states[car])) for car in cars]
-
-    def step(self, cars: list[int], actions: list[int]) -> Moved:
-        """Drive these cars one step: their observations, rewards, and whether they reached the goal."""
-        hill, states = self.hill, self._states
-        observations, rewards, terminated = [], [], []
-        for car, action in zip(cars, actions, strict=True):
-            states[car], reward, there = hill.step(states[car], action)
-            observations.append(np.array(hill.observe(states[car])))
-            rewards.append(reward)
-            terminated.append(there)
-        return observations, rewards, terminated
-
-
-class CompiledFleet(Fleet):
-    """The same, to the bit, in one compiled loop.
-
-    Raises:
-        CompilationError: when the hill cannot be compiled.
-    """
-
-    def __init__(self, hill: Hill, cars: int) -> None:
-        self.hill = hill
-        self._array = np.full((cars, 2), np.nan)
-        self._loop = self._compiled()
-
-    def put(self, car: int, state: State) -> None:  # noqa: D102 (described by the base, as all here)
-        self._array[car] = state
-
-    def states(self) -> list[State]:  # noqa: D102
-        return [(position, velocity) for position, velocity in self._array.tolist()]
-
-    def observe(self, cars: list[int]) -> Sequence[Observation]:  # noqa: D102
-        return [np.array(self.hill.observe(state)) for state in map(tuple, self._array[cars].tolist())]
-
-    def step(self, cars: list[int], actions: list[int]) -> Moved:  # noqa: D102
-        arguments = self._arguments(cars, actions)
-        self._loop(*arguments)
-        *_, observations, rewards, terminated = arguments
-        return list(observations), rewards.tolist(), terminated.tolist()  # rows: an array each
+    def step(self) -> int:
+        """One step of the cars that drive, by their actions. How many of them reached the goal."""
+        if self._next is None:
+            self._next = self._loop()
+        try:
+            return self._next()
+        except BaseException:
+            self._next = None  # what has raised does not go on
+            raise
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but the machine code."""
-        return {name: value for name, value in self.__dict__.items() if name != "_loop"}
+        """All but the loop: a copy begins its own. The views on arrays are made anew."""
+        views = ("driving", "actions", "observations", "rewards", "terminated")
+        rest = {name: value for name, value in self.__dict__.items() if name not in views}
+        return rest | {"_next": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self._loop = self._compiled()
+        self.drive(self._numbers[: self._count[0]].copy())
 
-    def _compiled(self) -> Callable[..., Any]:
-        return entry_point(advance, *self._arguments([0], [0]))
-
-    def _arguments(self, cars: list[int], actions: list[int]) -> tuple[Any, ...]:
-        count = len(cars)
-        return (
-            self.hill,
-            self._array,
-            np.array(cars, np.int64),
-            np.array(actions, np.int64),
-            np.empty((count, 2)),
-            np.empty(count),
-            np.empty(count, np.bool_),
-        )
+    def _loop(self) -> Callable[[], int]:
+        results = (self._observations, self._rewards, self._terminated)
+        arguments = (self.hill, self.states, self._count, self._numbers, self._actions, *results)
+        try:
+            loop = entry_point(steps, *arguments)
+        except CompilationError:
+            loop = steps
+        made: Iterator[int] = loop(*arguments)
+        return made.__next__
 
 
-def advance(
+def steps(
     hill: Any,
-    states: NDArray[np.float64],
-    cars: NDArray[np.int64],
-    actions: NDArray[np.int64],
-    observations: NDArray[np.float64],
-    rewards: NDArray[np.float64],
-    terminated: NDArray[np.bool_],
-) -> None:
-    """One step of some cars.
+    states: Floats,
+    count: Integers,
+    numbers: Integers,
+    actions: Integers,
+    observations: Floats,
+    rewards: Floats,
+    terminated: Flags,
+) -> Iterator[int]:
+    """Step some cars each time that the next value is asked for: how many reached the goal.
+
+    A generator, because the next value of a compiled one costs a twentieth of a call, which looks at each
+    constant of the hill. Its arrays must outlive it: it does not count its references.
 
     Args:
         hill: what they drive on.
         states: of all cars, changed in place, shape (cars, 2).
-        cars: the numbers of those that drive, shape (driving,).
-        actions: of these, shape (driving,).
-        observations: filled, shape (driving, 2).
-        rewards: filled, shape (driving,).
-        terminated: filled, shape (driving,).
+        count: how many drive, shape (1,).
+        numbers: of those that drive, at the beginning of shape (cars,), as in all that follow.
+        actions: of these.
+        observations: filled.
+        rewards: filled.
+        terminated: filled.
     """
-    for place in range(cars.shape[0]):
-        car = cars[place]
-        state = (states[car, 0], states[car, 1])
-        state, rewards[place], terminated[place] = hill.step(state, actions[place])
-        states[car, 0], states[car, 1] = state
-        seen = hill.observe(state)
-        observations[place, 0], observations[place, 1] = seen
+    while True:
+        there = 0
+        for place in range(count[0]):
+            car = numbers[place]
+            state = (float(states[car, 0]), float(states[car, 1]))
+            state, rewards[place], terminated[place] = hill.step(state, actions[place])
+            states[car, 0], states[car, 1] = state
+            seen = hill.observe(state)
+            observations[place, 0], observations[place, 1] = seen
+            there += terminated[place]
+        yield there

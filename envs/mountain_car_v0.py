@@ -20,7 +20,7 @@ from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 
 from envs.checks import choice, instance, integer
-from envs.fleet import make_fleet
+from envs.fleet import Fleet
 from envs.hill import Hill, State
 from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Rendered
 from envs.starts import checked_state
@@ -91,8 +91,7 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignor
             car: spaces.Box(low, high, dtype=np.float64) for car in self.possible_agents
         }
         self.action_spaces = {car: spaces.Discrete(hill.n_actions) for car in self.possible_agents}
-        self._fleet = make_fleet(hill, len(self.possible_agents))
-        self._live: list[int] = []  # numbers of ``agents`` among ``possible_agents``
+        self._fleet = Fleet(hill, len(self.possible_agents))
         self._streams: dict[str, np.random.Generator] = {}
         self._steps = 0
         self.state_space = spaces.Box(
@@ -123,15 +122,16 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignor
         if seed is not None or not self._streams:
             self._reseed(seed)
         self.agents = list(self.possible_agents)
-        self._live = list(range(len(self.agents)))
         self._steps = 0
         together = self.hill.reset(self._streams[""]) if self.same_start else None
-        for number, car in enumerate(self.agents):
-            start = given.get(car, together)
-            self._fleet.put(number, start or self.hill.reset(self._streams[car]))
+        starts = [given.get(car, together) or self.hill.reset(self._streams[car]) for car in self.agents]
+        self._fleet.states[:] = starts
+        self._fleet.drive(range(len(starts)))
         self.follow()
-        observations = self._fleet.observe(self._live)
-        return dict(zip(self.agents, observations, strict=True)), {car: {} for car in self.agents}
+        observations = {
+            car: np.array(self.hill.observe(start)) for car, start in zip(self.agents, starts, strict=True)
+        }
+        return observations, {car: {} for car in self.agents}
 
     def step(
         self, actions: Mapping[str, int]
@@ -150,23 +150,28 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignor
         Raises:
             TypeError, ValueError: when a live car has no action, or one that is not 0, 1 or 2.
         """
-        cars = self.agents
-        chosen = _actions(actions, cars, self.hill.n_actions)
+        cars, fleet = self.agents, self._fleet
+        chosen, n_actions = fleet.actions, self.hill.n_actions
+        for place, car in enumerate(cars):
+            action: Any = actions.get(car)
+            plain = type(action) in _PLAIN and 0 <= action < n_actions
+            chosen[place] = action if plain else _action(actions, car, n_actions)
+        there = fleet.step()
         self._steps += 1
-        observations, rewards, terminated = self._fleet.step(self._live, chosen)
+        observations = dict(zip(cars, fleet.observations.copy()))  # a row each
+        rewards = dict(zip(cars, fleet.rewards.tolist()))
+        infos: dict[str, dict[str, Any]] = {car: {} for car in cars}
         late = self._steps >= self.max_steps
-        if late or any(terminated):
-            goes_on = [not (late or there) for there in terminated]
-            self._live = list(compress(self._live, goes_on))
+        if there or late:
+            terminations = dict(zip(cars, fleet.terminated.tolist()))
+            truncations = {car: late and not terminations[car] for car in cars}
+            goes_on = ~fleet.terminated & (not late)
             self.agents = list(compress(cars, goes_on))
+            fleet.drive(fleet.driving[goes_on])
+        else:
+            terminations, truncations = dict.fromkeys(cars, False), dict.fromkeys(cars, False)
         self.follow()
-        return (
-            dict(zip(cars, observations, strict=True)),
-            dict(zip(cars, rewards, strict=True)),
-            dict(zip(cars, terminated, strict=True)),
-            {car: late and not there for car, there in zip(cars, terminated, strict=True)},
-            {car: {} for car in cars},
-        )
+        return observations, rewards, terminations, truncations, infos
 
     def state(self) -> Observation:
         """Position and velocity of each of ``possible_agents`` in turn; shape (2 * cars,).
@@ -178,12 +183,12 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignor
         """
         if not self._streams:
             raise ValueError("state is there after the first reset, not before")
-        return np.array(self._fleet.states()).ravel()
+        return self._fleet.states.ravel().copy()
 
     def shown(self) -> tuple[dict[str, State], int]:
         """The cars that there are after a reset, the ended ones included."""
-        there = self._fleet.states() if self._streams else []
-        return dict(zip(self.possible_agents, there)), self._steps
+        states = [(position, velocity) for position, velocity in self._fleet.states.tolist()]
+        return dict(zip(self.possible_agents, states if self._streams else [])), self._steps
 
     def _reseed(self, seed: int | None) -> None:
         master = np.random.SeedSequence(None if seed is None else integer("seed", seed, 0))
@@ -207,22 +212,6 @@ def _starts(hill: Hill, starts: Any, cars: list[str]) -> dict[str, State]:
     if not isinstance(starts, Mapping) or not starts.keys() <= set(cars):
         raise ValueError(f"start must give cars of {cars}, got {starts!r}")
     return {car: checked_state(hill, state, f" of {car}") for car, state in starts.items()}
-
-
-def _actions(actions: Mapping[str, int], cars: list[str], n_actions: int) -> list[int]:
-    """The actions of the cars.
-
-    Raises:
-        TypeError, ValueError: when one is missing, or is none.
-    """
-    chosen = [actions.get(car, -1) for car in cars]
-    if (
-        _PLAIN.issuperset(map(type, chosen))
-        and min(chosen, default=0) >= 0
-        and max(chosen, default=0) < n_actions
-    ):
-        return list(map(int, chosen))
-    return [_action(actions, car, n_actions) for car in cars]
 
 
 def _action(actions: Mapping[str, int], car: str, n_actions: int) -> int:

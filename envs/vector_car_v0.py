@@ -5,7 +5,7 @@
 autoreset mode.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,15 +16,13 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from envs.checks import choice, instance, integer
-from envs.compilation import entry_point
+from envs.fleet import Flags, Fleet, Floats
 from envs.hill import Hill
 from envs.rendering import FRAMES_PER_SECOND, Image, picture
 from envs.starts import start_state
 
 __all__ = ["VectorCarEnv"]
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Observations = NDArray[np.float32]
 
 
@@ -72,11 +70,10 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
         self.single_action_space = spaces.Discrete(hill.n_actions)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._states: Floats = np.full((num_envs, 2), np.nan)
+        self._fleet = Fleet(hill, num_envs)
         self._steps = np.zeros(num_envs, np.int64)
         self._ended = np.zeros(num_envs, np.bool_)
         self._streams: list[np.random.Generator | None] = [None] * num_envs
-        self._loop: Callable[..., Any] | None = None
 
     def reset(
         self,
@@ -107,7 +104,7 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
             if seeds[car] is not None:
                 self._streams[car] = seeding.np_random(seeds[car])[0]
             self._start(int(car), rest)
-        return self._states.astype(np.float32), {}
+        return self._fleet.states.astype(np.float32), {}
 
     def step(self, actions: NDArray[np.int64]) -> tuple[Observations, Floats, Flags, Flags, dict[str, Any]]:
         """Drive each car one step.
@@ -120,16 +117,12 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
                 autoreset disabled, when a car that has ended was not reset.
         """
         chosen = _checked_actions(actions, self.num_envs, self.hill.n_actions)
-        if np.isnan(self._states).any():
+        if np.isnan(self._fleet.states).any():
             raise ValueError("reset must be called before step")
         anew = self._ended
         if self.autoreset_mode == AutoresetMode.DISABLED and anew.any():
             raise ValueError(f"cars that have ended must be reset, got a step of {np.flatnonzero(anew)}")
-        rewards = np.zeros(self.num_envs)
-        terminated = np.zeros(self.num_envs, np.bool_)
-        arguments = (self.hill, self._states, chosen, anew, rewards, terminated)
-        self._loop = self._loop or entry_point(advance, *arguments)
-        self._loop(*arguments)
+        rewards, terminated = self._drive(chosen, anew)
         self._steps += ~anew
         truncated = (self._steps >= self.max_episode_steps) & ~anew
         info: dict[str, Any] = {}
@@ -138,25 +131,34 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
         self._ended = terminated | truncated
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
             info = self._start_ended()
-        return self._states.astype(np.float32), rewards, terminated, truncated, info
+        return self._fleet.states.astype(np.float32), rewards, terminated, truncated, info
 
     def render(self) -> tuple[Image, ...] | None:
         """One picture with all cars, as a tuple of one."""
         if self.render_mode is None:
             logger.warn("render is called without a render_mode; give one to gymnasium.make_vec")
             return None
-        cars = {f"car {car}": (x, v) for car, (x, v) in enumerate(self._states.tolist())}
+        cars = {f"car {car}": (x, v) for car, (x, v) in enumerate(self._fleet.states.tolist())}
         return (picture(self.hill, cars, int(self._steps.max())),)
 
-    def __getstate__(self) -> dict[str, Any]:
-        """All but the machine code, which a copy loads anew."""
-        return self.__dict__ | {"_loop": None}
+    def _drive(self, actions: NDArray[np.int64], anew: Flags) -> tuple[Floats, Flags]:
+        """One step of all but those that start anew: rewards and whether they are at the goal."""
+        fleet, some = self._fleet, anew.any()
+        if some or len(fleet.driving) < self.num_envs:
+            fleet.drive(np.flatnonzero(~anew))
+        fleet.actions[:] = actions[~anew] if some else actions
+        fleet.step()
+        if not some:
+            return fleet.rewards.copy(), fleet.terminated.copy()
+        rewards, terminated = np.zeros(self.num_envs), np.zeros(self.num_envs, np.bool_)
+        rewards[~anew], terminated[~anew] = fleet.rewards, fleet.terminated
+        return rewards, terminated
 
     def _start_ended(self) -> dict[str, Any]:
         """Let the cars that have ended start anew; their last observations, as Gymnasium tells them."""
         final, ended = np.full(self.num_envs, None, object), self._ended.copy()
         for car in np.flatnonzero(ended):
-            final[car] = self._states[car].astype(np.float32)
+            final[car] = self._fleet.states[car].astype(np.float32)
             self._start(int(car), {})
         return {"final_obs": final, "_final_obs": ended, "final_info": {}, "_final_info": ended.copy()}
 
@@ -164,33 +166,8 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
         stream = self._streams[car]
         if stream is None:
             stream = self._streams[car] = seeding.np_random()[0]
-        self._states[car] = start_state(self.hill, stream, options)
+        self._fleet.states[car] = start_state(self.hill, stream, options)
         self._steps[car], self._ended[car] = 0, False
-
-
-def advance(
-    hill: Hill,
-    states: Floats,
-    actions: NDArray[np.int64],
-    anew: Flags,
-    rewards: Floats,
-    terminated: Flags,
-) -> None:
-    """One step of each car but those that start anew.
-
-    Args:
-        hill: what they drive on.
-        states: changed in place, shape (cars, 2).
-        actions: shape (cars,).
-        anew: whose action is ignored, shape (cars,).
-        rewards: filled, 0 for those; shape (cars,).
-        terminated: filled, shape (cars,).
-    """
-    for car in range(states.shape[0]):
-        if not anew[car]:
-            state = (states[car, 0], states[car, 1])
-            state, rewards[car], terminated[car] = hill.step(state, actions[car])
-            states[car, 0], states[car, 1] = state
 
 
 def _checked_mask(mask: Any, count: int) -> Flags:

@@ -154,7 +154,8 @@ def test_it_is_gymnasium_s_sync_vector_of_single_cars_to_the_bit(mode: Autoreset
     seen = start[0]
     for step in range(900):
         actions = np.where(seen[:, 1] >= 0, 2, 0) if step % 300 < 200 else spun(step, 1, 5)[0]
-        one, other = ours.step(actions), theirs.step(actions)
+        one: Any = ours.step(actions)
+        other: Any = theirs.step(actions)
         for mine, wanted in zip(one[:4], other[:4], strict=True):
             assert mine.tobytes() == wanted.tobytes()
             assert mine.dtype == wanted.dtype

@@ -3,6 +3,8 @@
 from arena.builtin import field, paper, quick
 from arena.entrant import Entrant, sweep
 from arena.plugins import load_plugin
+from arena.policy import Policy
+from arena.policy_agent import PolicyAgent
 from arena.results import Results, load
 from arena.runner import run
 from arena.tournament import Evaluation, Tournament, Training
@@ -12,6 +14,8 @@ __all__ = [
     "Entrant",
     "Evaluation",
     "InterruptedWalk",
+    "Policy",
+    "PolicyAgent",
     "RandomWalk",
     "Results",
     "Tournament",

@@ -12,6 +12,8 @@ from arena.store import Store
 if TYPE_CHECKING:
     import pandas as pd
 
+    from arena.trained import Trained
+
 SCORES = ("accuracy", "mean_length", "iterations", "seconds", "driver", "status")
 _COLUMNS = ("accuracy", "mean_length", "steps", "iterations", "seconds", "driver", "status")
 
@@ -95,6 +97,16 @@ class Results:
             KeyError: when there is no such run.
         """
         return self._store.arrays(entrant, replicate)
+
+    def trained(self, entrant: str, replicate: int = 0) -> "Trained":
+        """The agent that a run trained; its ``policy`` drives elsewhere.
+
+        Raises:
+            ValueError: when there is no such run, or its agent cannot be told from the file.
+        """
+        from arena.trained import trained
+
+        return trained(self, entrant, replicate)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the arrays, as plain values; what ``arena show --json`` prints."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from agents import agent_class
 from arena.entrant import Entrant
 from arena.outcome import Arrays, agent_arrays
+from arena.policy import Policy
 from arena.results import Results
 from arena.tournament import Conditions, Evaluation, Run, Training
 from envs import Hill
@@ -46,6 +47,11 @@ class Trained:
     def hill(self) -> Hill:
         """What it drives on."""
         return self.conditions.hill
+
+    @property
+    def policy(self) -> Policy:
+        """What it has learned, for environments elsewhere: ``policy(observation)`` is the action."""
+        return Policy(self.agent)
 
     @cached_property
     def starts(self) -> NDArray[np.float64]:

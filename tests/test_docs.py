@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -50,6 +51,7 @@ def test_toml_examples_are_tournaments(code: str) -> None:
 @pytest.mark.slow
 def test_the_page_on_plugins_is_a_session_that_goes_as_it_says(tmp_path: Path) -> None:
     done = {"toml": 0, "python": 0, "console": 0}
+    shutil.copy(ROOT / "tests" / "stand_ins" / "stable_baselines3.py", tmp_path)
     for language, code in re.findall(r"```(\w+)\n(.*?)```", SESSION.read_text(), re.DOTALL):
         done[language] += 1
         name = re.match(r"# ([\w.]+)\n", code)

@@ -193,6 +193,7 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignor
     def _reseed(self, seed: int | None) -> None:
         master = np.random.SeedSequence(None if seed is None else integer("seed", seed, 0))
         self._streams = {car: stream(master, "start", car) for car in ["", *self.possible_agents]}
+        self.np_random = stream(master, "wrapper")  # SuperSuit's frame skipping draws from it
 
 
 def _names(cars: int | Iterable[str]) -> list[str]:

@@ -20,6 +20,7 @@ import ray  # type: ignore[import-not-found, unused-ignore]  # its own environme
 from pettingzoo.utils import BaseParallelWrapper, parallel_to_aec
 from ray.rllib.algorithms.ppo import PPOConfig  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from ray.rllib.env.multi_agent_episode import MultiAgentEpisode  # type: ignore[import-not-found, unused-ignore]  # its own environment
+from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from ray.rllib.env.wrappers.pettingzoo_env import (  # type: ignore[import-not-found, unused-ignore]  # its own environment
     ParallelPettingZooEnv,
     PettingZooEnv,
@@ -195,6 +196,22 @@ def test_nothing_is_over_when_agents_end_in_different_ways(aec: bool) -> None:
     if aec:
         with pytest.raises(KeyError):
             env.step({})
+
+
+@pytest.mark.theirs(
+    "RLlib 2.60 seeds copy i of worker w with seed + w + i, so copies of different workers drive the same "
+    "episodes; let reset add 1000 * worker_index, of the settings that the environment is made with"
+)
+def test_copies_of_different_workers_share_seeds() -> None:
+    """Several copies of the environment in several workers: their seeds"""
+    config = PPOConfig().environment("CartPole-v1").env_runners(num_envs_per_env_runner=2).debugging(seed=5)
+    seeds = []
+    for worker in (1, 2):
+        runner = SingleAgentEnvRunner(config=config, worker_index=worker)
+        runner.sample(num_timesteps=2, random_actions=True)
+        seeds.append(runner.env.unwrapped.np_random_seed)
+        runner.stop()
+    assert seeds == [(6, 7), (7, 8)]
 
 
 class OneStep(pettingzoo.ParallelEnv):  # type: ignore[misc, type-arg, unused-ignore]  # the base is untyped

@@ -53,7 +53,7 @@ class Report:
 
 def _function(nodeid: str) -> str:
     """One row for all parameters of a test."""
-    return nodeid.split("[")[0]
+    return nodeid.partition("[")[0]
 
 
 def pytest_configure(config: pytest.Config) -> None:

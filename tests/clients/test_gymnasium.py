@@ -71,7 +71,7 @@ def test_statistics() -> None:
     ("wrap", "shape"),
     [
         (lambda env: wrappers.FrameStackObservation(env, 4), (4, 2)),
-        (lambda env: wrappers.TimeAwareObservation(env), (3,)),
+        (wrappers.TimeAwareObservation, (3,)),
         (lambda env: wrappers.FlattenObservation(wrappers.FrameStackObservation(env, 3)), (6,)),
         (lambda env: wrappers.DelayObservation(env, 2), (2,)),
     ],

@@ -100,8 +100,8 @@ def test_black_death() -> None:
 
 @pytest.mark.theirs(
     "with `black_death_v3` (3.11) an episode ends a step late, with reward 0 and a zero observation, and as "
-    "terminated and truncated at once, because it waits for a step in which nobody is left; bootstrap nothing "
-    "there, or use one of our vectors"
+    "terminated and truncated at once, because it waits for a step in which nobody is left; use a vector of "
+    "single cars instead, or bootstrap nothing there"
 )
 def test_end_with_black_death() -> None:
     """``black_death_v3``: the end of the episode"""
@@ -129,8 +129,8 @@ def test_copies() -> None:
 
 
 @pytest.mark.theirs(
-    "`concat_vec_envs_v1` (3.11) with several processes gives copies in different processes the same seed; take "
-    "as many processes as copies"
+    "`concat_vec_envs_v1` (3.11) with several processes gives copies in different processes the same seed; "
+    "take as many processes as copies"
 )
 def test_copies_in_processes() -> None:
     """``concat_vec_envs_v1`` with fewer processes than copies: ``reset(seed)``"""
@@ -215,8 +215,8 @@ def test_other_wrappers(wrap: Any) -> None:
 
 
 @pytest.mark.theirs(
-    "`agent_indicator_v0` (3.11) marks an agent with the greatest bound of its space, and promises the least; "
-    "normalise first, then they are one"
+    "`agent_indicator_v0` (3.11) marks an agent with the greatest bound of its space, and promises the "
+    "least; normalise first, then they are one"
 )
 def test_indicator() -> None:
     """``agent_indicator_v0`` of observations whose bounds differ"""

@@ -33,6 +33,7 @@ from agilerl.wrappers.agent import AsyncAgentsWrapper  # type: ignore[import-not
 from pettingzoo.utils import BaseParallelWrapper
 
 from envs import mountain_car_v0
+from envs.parked import Parked
 
 
 class Apart(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
@@ -40,22 +41,6 @@ class Apart(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
 
     def reset(self, seed: int | None = None, options: Any = None) -> Any:
         return self.env.reset(seed, {"start": {"car_0": (0.49, 0.05)}})
-
-
-class Parked(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
-    """The remedy: a car that has ended stays where it is, ended and for no reward, until all have ended."""
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        self.seen, infos = self.env.reset(seed, options)
-        self.flags: list[dict[str, bool]] = [{}, {}]
-        return dict(self.seen), infos
-
-    def step(self, actions: Any) -> Any:
-        seen, rewards, *flags, infos = self.env.step(actions)
-        self.seen |= seen
-        self.flags = [before | now for before, now in zip(self.flags, flags)]
-        nothing = dict.fromkeys(self.seen, 0.0)
-        return dict(self.seen), nothing | rewards, *self.flags, {car: {} for car in self.seen} | infos
 
 
 class Recorded(IPPO):  # type: ignore[misc, unused-ignore]  # the base is untyped
@@ -155,7 +140,7 @@ def test_cars_that_end_apart_train() -> None:
 
 @pytest.mark.theirs(
     "IPPO of AgileRL 2.58 samples from NaN, which its vector gives for an agent that has ended, and its "
-    "AsyncAgentsWrapper mixes up lengths; keep agents that have ended, as the class Parked of this file does"
+    "AsyncAgentsWrapper mixes up lengths; keep agents that have ended, with envs.parked.Parked"
 )
 @pytest.mark.parametrize(
     ("wrap", "error"), [(lambda agent: agent, "nan"), (AsyncAgentsWrapper, "size")], ids=["IPPO", "wrapped"]

@@ -16,11 +16,12 @@ import numpy as np
 import pettingzoo
 import pettingzoo.test
 import pytest
-from pettingzoo.utils import BaseParallelWrapper, OrderEnforcingWrapper, aec_to_parallel
+from pettingzoo.utils import BaseParallelWrapper, OrderEnforcingWrapper, aec_to_parallel, parallel_to_aec
 
 import envs  # noqa: F401 (registers the cars)
 from envs import mountain_car_v0
 from envs.mountain_car_v0 import env, parallel_env, raw_env
+from envs.parked import Parked
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # windows without a screen
 
@@ -29,6 +30,12 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # windows without a screen
 def test_parallel_api(cars: int) -> None:
     """``parallel_api_test``"""
     pettingzoo.test.parallel_api_test(parallel_env(cars), num_cycles=1000)
+
+
+def test_parked_cars() -> None:
+    """``parallel_api_test`` and ``api_test`` of cars that stay until all have ended"""
+    pettingzoo.test.parallel_api_test(Parked(parallel_env(3), "together"), num_cycles=1000)
+    pettingzoo.test.api_test(parallel_to_aec(Parked(parallel_env(3), "together")), num_cycles=1000)
 
 
 @pytest.mark.parametrize("make", [env, raw_env])

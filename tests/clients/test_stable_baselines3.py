@@ -40,6 +40,7 @@ from agents import MomentumAgent
 from arena import Entrant, Evaluation, Policy, PolicyAgent, Tournament, Training, run
 from envs import Hill
 from envs.mountain_car_v0 import parallel_env
+from envs.parked import Parked
 from envs.single_car_v0 import SingleCarEnv
 
 CAR = "envs:arena/MountainCar-v0"
@@ -66,13 +67,9 @@ def single_cars(count: int, seed: int, **arguments: Any) -> Any:
 
 
 def many_cars(count: int) -> Any:
-    """PettingZoo's cars as Stable-Baselines3's vector: float32 from 0 to 1, the ended ones stay.
-
-    From 0 on, since an ended car observes zeros, which from -1 on would be a place in the valley.
-    """
-    cars = supersuit.dtype_v0(parallel_env(count, NEAR), np.float32)
-    cars = supersuit.black_death_v3(supersuit.normalize_obs_v0(cars, 0, 1))
-    vector = supersuit.pettingzoo_env_to_vec_env_v1(cars)
+    """PettingZoo's cars as Stable-Baselines3's vector: float32 from -1 to 1, the ended ones stay."""
+    cars = supersuit.normalize_obs_v0(supersuit.dtype_v0(parallel_env(count, NEAR), np.float32), -1, 1)
+    vector = supersuit.pettingzoo_env_to_vec_env_v1(Parked(cars))
     return supersuit.concat_vec_envs_v1(vector, 1, base_class="stable_baselines3")
 
 
@@ -90,7 +87,7 @@ def steps_of(policy: Any) -> float:
 def scaled(observation: Any) -> Any:
     """As ``normalize_obs_v0`` does it."""
     low, high = np.array(NEAR.low), np.array(NEAR.high)
-    return ((observation - low) / (high - low)).astype(np.float32)
+    return (2 * (observation - low) / (high - low) - 1).astype(np.float32)
 
 
 def test_check_env() -> None:
@@ -165,7 +162,7 @@ def test_remedy_for_the_seed() -> None:
         set_random_seed(1)
         cars = parallel_env(2, NEAR)
         cars.reset(seed=1)
-        vector = supersuit.pettingzoo_env_to_vec_env_v1(supersuit.black_death_v3(cars))
+        vector = supersuit.pettingzoo_env_to_vec_env_v1(Parked(cars))
         vector = supersuit.concat_vec_envs_v1(vector, 1, base_class="stable_baselines3")
         model = PPO("MlpPolicy", vector, n_steps=32, batch_size=64, **SMALL).learn(256)
         return [parameter.detach().numpy().tobytes() for parameter in model.policy.parameters()]

@@ -30,6 +30,7 @@ from tianshou.trainer import OffPolicyTrainerParams  # type: ignore[import-not-f
 from tianshou.utils.net.common import Net  # type: ignore[import-not-found, unused-ignore]  # its own environment
 
 from envs import mountain_car_v0
+from envs.parked import Parked
 
 
 class Apart(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
@@ -37,30 +38,6 @@ class Apart(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
 
     def reset(self, seed: int | None = None, options: Any = None) -> Any:
         return self.env.reset(seed, {"start": {"car_0": (0.49, 0.05)}})
-
-
-class Parked(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
-    """The remedy: a car that has ended stays where it is, for no reward, until all end together."""
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        self.seen, infos = self.env.reset(seed, options)
-        self.agents = list(self.seen)
-        return dict(self.seen), infos
-
-    def step(self, actions: Any) -> Any:
-        seen, rewards, _, truncated, infos = self.env.step(actions)
-        self.seen |= seen
-        over, late = not self.env.agents, any(truncated.values())
-        self.agents = [] if over else list(self.seen)
-        told = (dict.fromkeys(self.seen, what) for what in (0.0, over and not late, over and late))
-        nothing, terminated, truncated = told
-        return (
-            dict(self.seen),
-            nothing | rewards,
-            terminated,
-            truncated,
-            {car: {} for car in self.seen} | infos,
-        )
 
 
 @pytest.fixture(autouse=True)
@@ -151,7 +128,9 @@ def test_cars_that_end_apart_drive_to_their_ends() -> None:
     """A collector of cars that end apart, when those that have ended are kept"""
 
     def make() -> Any:
-        return PettingZooEnv(parallel_to_aec(Parked(Apart(mountain_car_v0.parallel_env(max_steps=20)))))
+        return PettingZooEnv(
+            parallel_to_aec(Parked(Apart(mountain_car_v0.parallel_env(max_steps=20)), "together"))
+        )
 
     algorithm, buffer = each(make(), steps=2), VectorReplayBuffer(1000, 2)
     collector = Collector(algorithm, DummyVectorEnv([make] * 2), buffer, exploration_noise=True)
@@ -178,7 +157,7 @@ def test_single_car_trains(vector: Any) -> None:
 
 @pytest.mark.theirs(
     "Tianshou 2.0 takes the end of the first agent for the end of the episode: the others' are cut short, "
-    "and marked as terminated if it was; keep agents that have ended, as the class Parked of this file does"
+    "and marked as terminated if it was; keep agents that have ended, with envs.parked.Parked"
 )
 def test_episode_ends_with_the_first_agent() -> None:
     """``PettingZooEnv`` of agents that end apart"""

@@ -1,26 +1,67 @@
 """How fast are the environments? Everything in one run, side by side.
 
+    pip install supersuit envpool
     python scripts/bench_envs.py
 
 The parallel environment beside the same bookkeeping with bare dictionaries and no physics, which no other
-with PettingZoo's interface can undercut, and beside SuperSuit's vector of Gymnasium cars where SuperSuit is
-installed; the vector environment beside Gymnasium's synchronous vector. Steps of one car a second.
+with PettingZoo's interface can undercut by much, and beside SuperSuit's vector of Gymnasium cars. The vector
+environment beside Gymnasium's synchronous vector, EnvPool and a loop in C. What is not installed is left out.
+Steps of one car a second, medians of measurements taken in turns; the cars stand still, so that all episodes
+have 200 steps.
 """
 
 import argparse
+import ctypes
+import tempfile
 import time
+import warnings
 from collections.abc import Callable
 from functools import partial
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import gymnasium
 import numpy as np
+from c_loops import built
 
 from envs.mountain_car_v0 import parallel_env
 
 STEPS = 200
 """Steps of an episode: of cars that do not reach the goal."""
+
+ID = "envs:arena/MountainCar-v0"
+
+C = r"""
+#include <math.h>
+#include <stdint.h>
+
+void drive(int64_t cars, double *states, const int64_t *actions, int64_t *steps, uint64_t *chance,
+           float *observations, double *rewards, uint8_t *terminated, uint8_t *truncated)
+{
+    for (int64_t car = 0; car < cars; car++) {
+        double x = states[2 * car], v = states[2 * car + 1];
+        if (steps[car] < 0) {  /* has ended: starts anew */
+            *chance = *chance * 6364136223846793005ULL + 1442695040888963407ULL;
+            x = -0.6 + 0.2 * ((*chance >> 11) * (1.0 / 9007199254740992.0)), v = 0.0;
+            steps[car] = 0, rewards[car] = 0.0, terminated[car] = truncated[car] = 0;
+        } else {
+            v += (actions[car] - 1) * 0.001 + cos(3.0 * x) * -0.0025;
+            if (v < -0.07) v = -0.07;
+            if (v > 0.07) v = 0.07;
+            x += v;
+            if (x < -1.2) x = -1.2;
+            if (x > 0.6) x = 0.6;
+            if (x == -1.2 && v < 0.0) v = 0.0;
+            steps[car]++, rewards[car] = -1.0;
+            terminated[car] = x >= 0.5, truncated[car] = steps[car] >= 200;
+            if (terminated[car] || truncated[car]) steps[car] = -1;
+        }
+        states[2 * car] = x, states[2 * car + 1] = v;
+        observations[2 * car] = (float)x, observations[2 * car + 1] = (float)v;
+    }
+}
+"""
 
 
 class BareDicts:
@@ -52,8 +93,29 @@ class BareDicts:
         )
 
 
+class InC:
+    """A vector environment that is one call of C."""
+
+    def __init__(self, drive: Any, cars: int) -> None:
+        self.drive, self.num_envs = drive, cars
+        self.states, self.steps = np.zeros((cars, 2)), np.full(cars, -1)
+        self.chance = np.array([1], np.uint64)
+
+    def reset(self, seed: int | None = None) -> None:
+        """All start in the next step."""
+        self.steps[:] = -1
+
+    def step(self, actions: np.ndarray[Any, np.dtype[np.int64]]) -> tuple[Any, ...]:
+        """One step of all, in new arrays."""
+        cars = self.num_envs
+        told = np.empty((cars, 2), np.float32), np.empty(cars), np.empty(cars, bool), np.empty(cars, bool)
+        arrays = (self.states, actions, self.steps, self.chance, *told)
+        self.drive(ctypes.c_int64(cars), *(ctypes.c_void_p(array.ctypes.data) for array in arrays))
+        return *told, {}
+
+
 def parallel(cars: Any, seconds: float) -> float:
-    """Steps of one car a second, resets included; the cars stand still."""
+    """Steps of one car a second, resets included."""
     cars.reset(seed=1)
     cars.step(dict.fromkeys(cars.agents, 1))  # compiled now, if at all
     count, began = 0, time.perf_counter()
@@ -66,25 +128,72 @@ def parallel(cars: Any, seconds: float) -> float:
     return count / (time.perf_counter() - began)
 
 
-def vector(cars: Any, seconds: float) -> float:
+def vector(cars: Any, count: int, seconds: float) -> float:
     """The same of a vector environment, which resets its cars itself."""
-    cars.reset(seed=1)
-    actions = np.ones(cars.num_envs, np.int64)
-    cars.step(actions)  # compiled now, if at all
-    count, began = 0, time.perf_counter()
+    cars.reset()
+    actions = np.ones(count, np.int64)
+    cars.step(actions)
+    steps, began = 0, time.perf_counter()
     while time.perf_counter() - began < seconds:
         for _ in range(STEPS):
             cars.step(actions)
-        count += STEPS * cars.num_envs
-    return count / (time.perf_counter() - began)
+        steps += STEPS * count
+    return steps / (time.perf_counter() - began)
 
 
-def super_suit(cars: int) -> Any:
-    """SuperSuit's vector of Gymnasium cars."""
-    import supersuit  # type: ignore[import-not-found, unused-ignore]  # optional
+def check_c(drive: Any) -> None:
+    """See that the loop in C drives as our vector does, to the bit."""
+    ours, theirs, rng = gymnasium.make_vec(ID, 5), InC(drive, 5), np.random.default_rng(1)
+    ours.reset(seed=1)
+    theirs.states[:], theirs.steps[:] = ours.unwrapped._fleet.states, 0  # type: ignore[attr-defined] # noqa: SLF001 (float64)
+    for _ in range(STEPS):
+        actions = rng.integers(3, size=5)
+        for one, other in zip(ours.step(actions)[:4], theirs.step(actions)[:4], strict=True):
+            if one.tobytes() != other.tobytes():
+                raise AssertionError("the loop in C drives otherwise")
 
-    single = gymnasium.make("MountainCar-v0")
-    return supersuit.gym_vec_env_v0(single, cars)
+
+def contenders_of_parallel(count: int, seconds: float) -> dict[str, Callable[[], float]]:
+    """What the parallel environment is compared with, itself first."""
+    found: dict[str, Callable[[], float]] = {
+        "parallel_env": partial(parallel, parallel_env(count, max_steps=STEPS), seconds),
+        "bare dictionaries": partial(parallel, BareDicts(count), seconds),
+    }
+    if find_spec("supersuit"):
+        import supersuit  # type: ignore[import-not-found, unused-ignore]  # optional
+
+        theirs = supersuit.gym_vec_env_v0(gymnasium.make("MountainCar-v0"), count)
+        found["SuperSuit's vector"] = partial(vector, theirs, count, seconds)
+    return found
+
+
+def contenders_of_vector(count: int, seconds: float, drive: Any) -> dict[str, Callable[[], float]]:
+    """What the vector environment is compared with, itself first."""
+    sync = gymnasium.make_vec("MountainCar-v0", count, vectorization_mode="sync")
+    found: dict[str, Any] = {"vector": gymnasium.make_vec(ID, count), "Gymnasium's sync vector": sync}
+    if find_spec("envpool"):
+        import envpool  # type: ignore[import-not-found, unused-ignore]  # optional
+
+        found["EnvPool"] = envpool.make_gymnasium("MountainCar-v0", num_envs=count)
+    if drive:
+        found["C"] = InC(drive, count)
+    return {name: partial(vector, cars, count, seconds) for name, cars in found.items()}
+
+
+def table(
+    sizes: list[int], repeats: int, contenders: Callable[[int], dict[str, Callable[[], float]]]
+) -> None:
+    """Print steps a second for each size; behind the first contender's, what it is of each other's."""
+    for number, size in enumerate(sizes):
+        measured = contenders(size)
+        if not number:
+            ours, *others = measured
+            print("\n| cars |", " | ".join([ours, *(f"{name} | ratio" for name in others)]), "|")
+            print("|---:|" + "---:|" * (2 * len(others) + 1))
+        rounds = [[measure() for measure in measured.values()] for _ in range(repeats)]
+        first, *rest = np.median(rounds, axis=0)
+        row = [f"{first:,.0f}", *(f"{other:,.0f} | {first / other:.2f}" for other in rest)]
+        print(f"| {size} |", " | ".join(row), "|", flush=True)
 
 
 def main() -> None:
@@ -96,41 +205,14 @@ def main() -> None:
     parser.add_argument("--vectors", type=int, nargs="+", default=[1, 64, 4096])
     arguments = parser.parse_args()
     seconds, repeats = arguments.seconds, arguments.repeats
-
-    print("| cars | parallel_env | bare dictionaries | ratio |")
-    print("|---:|---:|---:|---:|")
-    for count in arguments.cars:
-        ours, floor = compared(
-            partial(parallel, parallel_env(count, max_steps=STEPS), seconds),
-            partial(parallel, BareDicts(count), seconds),
-            repeats,
-        )
-        print(f"| {count} | {ours:,.0f} | {floor:,.0f} | {ours / floor:.2f} |", flush=True)
-    if find_spec("supersuit"):
-        ours, theirs = compared(
-            partial(parallel, parallel_env(64, max_steps=STEPS), seconds),
-            partial(vector, super_suit(64), seconds),
-            repeats,
-        )
-        print(f"\nparallel_env with 64 cars is {ours / theirs:.1f} times SuperSuit's vector of 64 cars.")
-    else:
-        print("\nSuperSuit is not installed: no comparison with its vector.")
-    print("\n| cars | vector environment | Gymnasium's sync vector | ratio |")
-    print("|---:|---:|---:|---:|")
-    for count in arguments.vectors:
-        ours, theirs = compared(
-            partial(vector, gymnasium.make_vec("envs:arena/MountainCar-v0", count), seconds),
-            partial(vector, gymnasium.make_vec("MountainCar-v0", count, vectorization_mode="sync"), seconds),
-            repeats,
-        )
-        print(f"| {count} | {ours:,.0f} | {theirs:,.0f} | {ours / theirs:,.0f} |", flush=True)
-
-
-def compared(ours: Callable[[], float], theirs: Callable[[], float], repeats: int) -> tuple[float, float]:
-    """The medians of measurements taken in turns."""
-    pairs = [(ours(), theirs()) for _ in range(repeats)]
-    medians = np.median(pairs, axis=0)
-    return float(medians[0]), float(medians[1])
+    warnings.simplefilter("ignore")  # of the others
+    gymnasium.logger.min_level = gymnasium.logger.ERROR
+    with tempfile.TemporaryDirectory() as folder:
+        drive = built(C, "drive", Path(folder))
+        if drive:
+            check_c(drive)
+        table(arguments.cars, repeats, lambda count: contenders_of_parallel(count, seconds))
+        table(arguments.vectors, repeats, lambda count: contenders_of_vector(count, seconds, drive))
 
 
 if __name__ == "__main__":

@@ -12,9 +12,7 @@ import argparse
 import ctypes
 import json
 import math
-import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
@@ -23,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from c_loops import built
 
 from arena import random_walk
 from arena.walk_study import PAPER, PAPER_SECONDS
@@ -75,13 +74,8 @@ int64_t walk(const uint64_t *seeded, int64_t max_steps, double *bounds)
 Lengths = list[int]
 
 
-def in_c(compiler: str, folder: Path) -> Callable[[int], Lengths]:
-    """The walks of the library that ``compiler`` makes in ``folder``."""
-    source, library = folder / "walk.c", folder / "walk.so"
-    source.write_text(C)
-    options = ["-O3", "-ffp-contract=off", "-shared", "-fPIC"]
-    subprocess.run([compiler, *options, str(source), "-o", str(library), "-lm"], check=True)
-    walk = ctypes.CDLL(str(library)).walk
+def in_c(walk: Any) -> Callable[[int], Lengths]:
+    """The walks of the function in C."""
     walk.restype, walk.argtypes = ctypes.c_int64, [ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p]
 
     def walks(episodes: int) -> Lengths:
@@ -147,9 +141,9 @@ def measure(episodes: int, repeats: int, part: int) -> dict[str, float]:
     """Nanoseconds a step, medians, and medians of the ratios, run by run."""
     contenders: dict[str, Callable[[int], Lengths]] = {"ours": ours, "ours, 2 workers": lambda n: ours(n, 2)}
     with tempfile.TemporaryDirectory() as folder:
-        compiler = shutil.which("gcc") or shutil.which("cc")
-        if compiler:
-            contenders["C"] = in_c(compiler, Path(folder))
+        walk = built(C, "walk", Path(folder))
+        if walk:
+            contenders["C"] = in_c(walk)
         else:
             print("no C compiler: its loop is left out", file=sys.stderr)
         expected = in_python(part)

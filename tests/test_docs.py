@@ -1,5 +1,6 @@
 """What README and docs say is executed, and what they show is what the commands print."""
 
+import ast
 import json
 import re
 import shutil
@@ -104,6 +105,19 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert target.startswith("http") or (page.parent / target).exists(), target
 
 
+def test_the_table_of_clients_is_of_the_tests_that_there_are() -> None:
+    table = (ROOT / "docs" / "clients.md").read_text().split("<!-- table")[1].split("<!-- end")[0]
+    rows = re.findall(r"^\| \| (.*?) \| (works|\[theirs\]\(.*?#L(\d+)\).*) \|$", table, re.MULTILINE)
+    expected = []
+    for path in sorted((ROOT / "tests" / "clients").glob("test_*.py")):
+        for test in ast.parse(path.read_text()).body:
+            if isinstance(test, ast.FunctionDef) and test.name.startswith("test_"):
+                lines = [one.lineno for one in test.decorator_list if "theirs" in ast.unparse(one)]
+                what = " ".join((ast.get_docstring(test) or "").split()).replace("``", "`")
+                expected.append((what, str(min(one.lineno for one in test.decorator_list)) if lines else ""))
+    assert [(what, line) for what, _, line in rows] == expected
+
+
 def test_every_reading_is_documented() -> None:
     text = (ROOT / "docs" / "readings.md").read_text()
     for name, reading in READINGS.items():
@@ -120,6 +134,12 @@ def test_every_reading_is_documented() -> None:
             "bench_walk.py",
             "--episodes 2 --part 1 --repeats 1",
             "million steps a second",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "bench_envs.py",
+            "--seconds 0.01 --repeats 1 --cars 2 --vectors 3",
+            "| vector | Gymnasium's sync vector | ratio |",
             marks=pytest.mark.slow,
         ),
         ("measured_coverage.py", "--trials 3 --parts mean", "| mean, Student's t | normal | 5 | 95.0% |"),
@@ -148,6 +168,15 @@ def test_the_readme_shows_what_the_command_prints(tmp_path: Path) -> None:
 def test_the_learning_loop_keeps_up_with_one_written_by_hand() -> None:
     for name, row in json.loads(succeed("scripts/bench_learning.py", "--json", cwd=ROOT)).items():
         assert row["ratio"] <= 1.5, name
+
+
+@pytest.mark.slow
+def test_the_environments_keep_up_with_bare_dictionaries_and_leave_gymnasium_s_vector_behind() -> None:
+    output = succeed("scripts/bench_envs.py", *"--seconds 0.2 --cars 1 8 64 --vectors 64".split(), cwd=ROOT)
+    rows = [line.strip("| ").split(" | ") for line in output.splitlines() if re.match(r"\| \d", line)]
+    for cars, _, _, ratio, *_ in rows[:3]:
+        assert float(ratio) >= 0.5, cars  # 0.8 and more on an idle machine
+    assert float(rows[3][3]) > 20  # 60
 
 
 @pytest.mark.slow

@@ -100,7 +100,7 @@ def test_scaling() -> None:
 
 def test_video(tmp_path: Path) -> None:
     """``RecordVideo`` writes an mp4"""
-    env = wrappers.RecordVideo(gymnasium.make(CAR, render_mode="rgb_array"), str(tmp_path))
+    env: Any = wrappers.RecordVideo(gymnasium.make(CAR, render_mode="rgb_array"), str(tmp_path))
     episode(env)
     env.close()
     assert [file.suffix for file in tmp_path.iterdir()] == [".mp4"]
@@ -109,7 +109,7 @@ def test_video(tmp_path: Path) -> None:
 @pytest.mark.parametrize("make", [SyncVectorEnv, AsyncVectorEnv])
 def test_vectors_of_single_cars(make: Any) -> None:
     """``SyncVectorEnv`` and ``AsyncVectorEnv`` of single cars drive as our vector of cars"""
-    theirs = make([lambda: gymnasium.make(CAR)] * 4)
+    theirs: Any = make([lambda: gymnasium.make(CAR)] * 4)
     ours = gymnasium.make_vec(CAR, 4)
     assert ours.reset(seed=1)[0].tobytes() == theirs.reset(seed=1)[0].tobytes()
     for step in range(250):

@@ -120,7 +120,8 @@ def test_there_and_back() -> None:
     assert repr(back.reset(seed=1)[0]) == repr(cars.reset(seed=1)[0])
     while cars.agents:
         actions = dict.fromkeys(cars.agents, 2)
-        for one, other in zip(back.step(actions)[:4], cars.step(actions)[:4], strict=True):
+        answers: Any = zip(back.step(actions)[:4], cars.step(actions)[:4], strict=True)
+        for one, other in answers:
             assert {car: np.asarray(value).tolist() for car, value in one.items()} == {
                 car: np.asarray(value).tolist() for car, value in other.items()
             }

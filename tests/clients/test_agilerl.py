@@ -18,7 +18,6 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-import pettingzoo
 import pytest
 import torch  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from agilerl.algorithms import DQN, IPPO  # type: ignore[import-not-found, unused-ignore]  # its own environment
@@ -30,6 +29,7 @@ from agilerl.training.train_off_policy import train_off_policy  # type: ignore[i
 from agilerl.utils.utils import make_multi_agent_vect_envs, make_vect_envs  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from agilerl.vector import PzDummyVecEnv  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from agilerl.wrappers.agent import AsyncAgentsWrapper  # type: ignore[import-not-found, unused-ignore]  # its own environment
+from clients.countdown import Countdown
 from pettingzoo.utils import BaseParallelWrapper
 
 from envs import mountain_car_v0
@@ -184,35 +184,3 @@ def test_import_needs_peft() -> None:
     program = "import sys; sys.modules['peft'] = None; import agilerl.algorithms"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert "ModuleNotFoundError: No module named 'peft" in done.stderr
-
-
-class Countdown(pettingzoo.ParallelEnv):  # type: ignore[misc, type-arg, unused-ignore]  # the base is untyped
-    """The smallest environment whose agents end apart (or together): after one step and after three."""
-
-    metadata = {"name": "countdown"}  # noqa: RUF012 (declared so by the base)
-    possible_agents = ["a_0", "a_1"]  # noqa: RUF012
-    render_mode = None
-
-    def __init__(self, together: bool = False) -> None:
-        self.left = {"a_0": 3 if together else 1, "a_1": 3}
-
-    def observation_space(self, agent: str) -> Any:
-        return gymnasium.spaces.Box(0, 3, (2,))
-
-    def action_space(self, agent: str) -> Any:
-        return gymnasium.spaces.Discrete(2)
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        self.agents, self.steps = ["a_0", "a_1"], 0
-        return self.told(np.zeros(2, np.float32)), self.told({})
-
-    def step(self, actions: Any) -> Any:
-        self.steps += 1
-        ended = {agent: self.steps == self.left[agent] for agent in self.agents}
-        seen, rewards = self.told(np.full(2, self.steps, np.float32)), self.told(-1.0)
-        truncated, infos = self.told(False), self.told({})
-        self.agents = [agent for agent in self.agents if not ended[agent]]
-        return seen, rewards, ended, truncated, infos
-
-    def told(self, what: Any) -> dict[str, Any]:
-        return dict.fromkeys(self.agents, what)

@@ -14,46 +14,12 @@ import gymnasium
 import numpy as np
 import pytest
 import supersuit  # type: ignore[import-not-found, unused-ignore]  # its own environment
-from gymnasium import spaces
-from pettingzoo import ParallelEnv
+from clients.countdown import Countdown
 
 from envs.mountain_car_v0 import parallel_env
 
 EARLY = {"start": {"car_0": (0.45, 0.06)}}
 """With thrust to the right this car is there after one step."""
-
-
-class Counters(ParallelEnv[str, Any, int]):  # type: ignore[misc]  # the base is untyped
-    """Two agents observe the number of steps and a draw; they are truncated after one and three steps."""
-
-    metadata = {"name": "counters"}  # noqa: RUF012 (declared so by the base)
-    possible_agents = ["one", "three"]  # noqa: RUF012 (likewise)
-    render_mode = None
-
-    def observation_space(self, agent: str) -> Any:
-        return spaces.Box(np.zeros(2), np.array([9.0, 1.0]), dtype=np.float64)
-
-    def action_space(self, agent: str) -> Any:
-        return spaces.Discrete(2)
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        self.agents, self.steps = list(self.possible_agents), 0
-        self.draw = np.random.default_rng(seed).random()
-        return {agent: np.array([0, self.draw]) for agent in self.agents}, {
-            agent: {} for agent in self.agents
-        }
-
-    def step(self, actions: dict[str, int]) -> Any:
-        told, self.steps = self.agents, self.steps + 1
-        over = {"one": self.steps >= 1, "three": self.steps >= 3}
-        self.agents = [agent for agent in told if not over[agent]]
-        return (
-            {agent: np.array([self.steps, self.draw]) for agent in told},
-            dict.fromkeys(told, 1.0),
-            dict.fromkeys(told, False),
-            {agent: over[agent] for agent in told},
-            {agent: {} for agent in told},
-        )
 
 
 def same_limit(cars: int = 3, **arguments: Any) -> parallel_env:
@@ -105,16 +71,16 @@ def test_black_death() -> None:
 )
 def test_end_with_black_death() -> None:
     """``black_death_v3``: the end of the episode"""
-    agents = supersuit.black_death_v3(Counters())
+    agents = supersuit.black_death_v3(Countdown())
     agents.reset(seed=1)
     for _ in range(3):
-        *_, terminations, truncations, _ = agents.step({"one": 0, "three": 0})
-    assert not any((terminations | truncations).values())  # though all were truncated by now
-    observed, rewards, terminations, truncations, _ = agents.step({"one": 0, "three": 0})
+        *_, terminations, truncations, _ = agents.step({"a_0": 0, "a_1": 0})
+    assert not any((terminations | truncations).values())  # though all had terminated by now
+    observed, rewards, terminations, truncations, _ = agents.step({"a_0": 0, "a_1": 0})
     assert set(rewards.values()) == {0.0}
     assert not np.any(list(observed.values()))
-    assert all(terminations.values())  # nobody reached anything
-    assert all(truncations.values())
+    assert all(terminations.values())
+    assert all(truncations.values())  # nobody was
 
 
 def test_copies() -> None:
@@ -134,7 +100,7 @@ def test_copies() -> None:
 )
 def test_copies_in_processes() -> None:
     """``concat_vec_envs_v1`` with fewer processes than copies: ``reset(seed)``"""
-    vector = supersuit.pettingzoo_env_to_vec_env_v1(Counters())
+    vector = supersuit.pettingzoo_env_to_vec_env_v1(Countdown())
     copies = supersuit.concat_vec_envs_v1(vector, 4, num_cpus=2)
     draws = copies.reset(seed=1)[0][::2, 1]
     copies.close()
@@ -220,10 +186,10 @@ def test_other_wrappers(wrap: Any) -> None:
 )
 def test_indicator() -> None:
     """``agent_indicator_v0`` of observations whose bounds differ"""
-    agents = supersuit.agent_indicator_v0(Counters())
-    observed = agents.reset(seed=1)[0]["one"]
-    assert observed[2:].tolist() == [9.0, 0.0]
-    assert agents.observation_space("one").high[2:].tolist() == [1.0, 1.0]
+    agents = supersuit.agent_indicator_v0(Countdown())
+    observed = agents.reset(seed=1)[0]["a_0"]
+    assert observed[2:].tolist() == [3.0, 0.0]
+    assert agents.observation_space("a_0").high[2:].tolist() == [1.0, 1.0]
 
 
 def test_vector_of_single_cars() -> None:

@@ -16,9 +16,9 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-import pettingzoo
 import pytest
 import torch  # type: ignore[import-not-found, unused-ignore]  # its own environment
+from clients.countdown import Countdown
 from pettingzoo.utils import BaseParallelWrapper, parallel_to_aec
 from tianshou.algorithm import DQN  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from tianshou.algorithm.modelfree.dqn import DiscreteQLearningPolicy  # type: ignore[import-not-found, unused-ignore]  # its own environment
@@ -177,7 +177,7 @@ def test_rewards_go_to_the_last_agent() -> None:
     collector = Collector(each(env, steps=1), DummyVectorEnv([lambda: env]), buffer, exploration_noise=True)
     collector.reset()
     collector.collect(n_episode=2)
-    assert targets(each(env, steps=1), buffer) == {"a": [0.0] * 6, "b": [-1.0] * 6}
+    assert targets(each(env, steps=1), buffer) == {"a_0": [0.0] * 6, "a_1": [-1.0] * 6}
 
 
 @pytest.mark.theirs(
@@ -192,35 +192,3 @@ def test_reset_gives_all_the_same_seed() -> None:
     envs.seed(7)
     one, other = envs.reset()[0].tolist()
     assert one != other
-
-
-class Countdown(pettingzoo.ParallelEnv):  # type: ignore[misc, type-arg, unused-ignore]  # the base is untyped
-    """The smallest environment whose agents end apart (or together): after one step and after three."""
-
-    metadata = {"name": "countdown", "is_parallelizable": True}  # noqa: RUF012 (declared so by the base)
-    possible_agents = ["a", "b"]  # noqa: RUF012
-    render_mode = None
-
-    def __init__(self, together: bool = False) -> None:
-        self.left = {"a": 3 if together else 1, "b": 3}
-
-    def observation_space(self, agent: str) -> Any:
-        return gymnasium.spaces.Box(0, 3, (1,))
-
-    def action_space(self, agent: str) -> Any:
-        return gymnasium.spaces.Discrete(2)
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        self.agents, self.steps = ["a", "b"], 0
-        return self.told(np.zeros(1, np.float32)), self.told({})
-
-    def step(self, actions: Any) -> Any:
-        self.steps += 1
-        ended = {agent: self.steps == self.left[agent] for agent in self.agents}
-        seen, rewards = self.told(np.full(1, self.steps, np.float32)), self.told(-1.0)
-        truncated, infos = self.told(False), self.told({})
-        self.agents = [agent for agent in self.agents if not ended[agent]]
-        return seen, rewards, ended, truncated, infos
-
-    def told(self, what: Any) -> dict[str, Any]:
-        return dict.fromkeys(self.agents, what)

@@ -13,10 +13,10 @@ their mask, seeds, vectors, a collector, and a loss over the cars that live.
 from typing import Any
 
 import gymnasium
-import numpy as np
 import pettingzoo
 import pytest
 import torch  # type: ignore[import-not-found, unused-ignore]  # its own environment
+from clients.countdown import Countdown
 from torchrl.collectors import Collector  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from torchrl.data import Categorical  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from torchrl.envs import (  # type: ignore[import-not-found, unused-ignore]  # its own environment
@@ -149,31 +149,3 @@ def test_cars_that_live_train_a_shared_network() -> None:
         loss(batch)["loss"].backward()
         optimizer.step()
     assert not any(torch.equal(one, other) for one, other in zip(before, network.parameters()))
-
-
-class Countdown(pettingzoo.ParallelEnv[str, Any, int]):  # type: ignore[misc]  # the base is untyped
-    """The smallest environment whose agents end at different times: ``a`` after a step, ``b`` after three."""
-
-    metadata = {"name": "countdown", "is_parallelizable": True}  # noqa: RUF012 (declared so by the base)
-    possible_agents = ["a", "b"]  # noqa: RUF012
-
-    def observation_space(self, agent: str) -> Any:
-        return gymnasium.spaces.Box(0, 3, (1,))
-
-    def action_space(self, agent: str) -> Any:
-        return gymnasium.spaces.Discrete(2)
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        self.agents, self.steps = ["a", "b"], 0
-        return self.told(np.zeros(1, np.float32)), self.told({})
-
-    def step(self, actions: Any) -> Any:
-        self.steps += 1
-        ended = {agent: self.steps == (1 if agent == "a" else 3) for agent in self.agents}
-        seen, rewards = self.told(np.full(1, self.steps, np.float32)), self.told(-1.0)
-        truncated, infos = self.told(False), self.told({})
-        self.agents = [agent for agent in self.agents if not ended[agent]]
-        return seen, rewards, ended, truncated, infos
-
-    def told(self, what: Any) -> dict[str, Any]:
-        return dict.fromkeys(self.agents, what)

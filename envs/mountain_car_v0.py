@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from gymnasium import spaces
+from gymnasium.utils import EzPickle
 from numpy.typing import NDArray
 from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
@@ -42,7 +43,7 @@ def raw_env(**arguments: Any) -> AECEnv[str, Observation, int | None]:
     return parallel_to_aec(parallel_env(**arguments))
 
 
-class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignore[misc]  # the base is untyped
+class parallel_env(Rendered, ParallelEnv[str, Observation, int], EzPickle):  # type: ignore[misc]  # the base is untyped
     """Several cars that drive at the same time and do not touch each other.
 
     Args:
@@ -80,7 +81,9 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int]):  # type: ignor
     ) -> None:
         if render_mode is not None:
             choice("render_mode", render_mode, RENDER_MODES)
-        self.possible_agents = _names(cars)
+        self.possible_agents = names = _names(cars)
+        # The arguments are kept, as in all of PettingZoo's environments; pickled is the episode as well.
+        EzPickle.__init__(self, names, hill, max_steps, same_start, render_mode, max_cycles=max_cycles)
         self.agents: list[str] = []
         self.hill = instance("hill", hill, Hill)
         self.max_steps = integer("max_steps", max_steps if max_cycles is None else max_cycles, 1)

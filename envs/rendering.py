@@ -215,3 +215,6 @@ class Rendered:
     def __getstate__(self) -> dict[str, Any]:
         """All but the window: a copy is in the middle of the same episode, and opens its own."""
         return self.__dict__ | {"_window": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)

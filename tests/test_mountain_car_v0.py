@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gymnasium.utils import EzPickle
 
 from envs import Hill, mountain_car_v0
 from envs.mountain_car_v0 import Observation, env, parallel_env, raw_env
@@ -252,6 +253,13 @@ def test_bad_seed_is_refused(error: type[Exception], seed: Any) -> None:
 
 
 # Copies
+
+
+def test_the_arguments_are_kept_as_pettingzoo_s_environments_keep_them() -> None:
+    cars = parallel_env((name for name in "ab"), max_steps=7)  # names that can be gone through once
+    assert isinstance(cars, EzPickle)
+    again = pickle.loads(pickle.dumps(cars))  # noqa: S301
+    assert drive(parallel_env(*again._ezpickle_args, **again._ezpickle_kwargs), 7, 1) == drive(cars, 7, 1)
 
 
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda cars: pickle.loads(pickle.dumps(cars))])  # noqa: S301

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+_USUAL = ("steps", "accuracy", "length", "iterations")
+_BESIDE = {"regret": ("regret_median", "regret_90", "accuracy", "iterations")}
+
+
 @dataclass(frozen=True)
 class Standing:
     """One entrant's line.
@@ -66,6 +70,11 @@ class Leaderboard:
     standings: tuple[Standing, ...]
     p_values: tuple[tuple[float, ...], ...]
     remarks: tuple[str, ...]
+
+    @property
+    def shown(self) -> list[str]:
+        """The scores that tables show, the one that decides first."""
+        return [self.by, *(name for name in _BESIDE.get(self.by, _USUAL) if name != self.by)]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None; each estimate as value, low and high."""

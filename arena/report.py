@@ -17,8 +17,6 @@ from arena.results import Results
 from arena.scores import SCORES, decimals, scores_of
 from arena.verdicts import Claim
 
-_BESIDE = ("steps", "accuracy", "length", "iterations")
-
 
 def write_report(results: Results, path: Path, by: str = "steps", confidence: float = 0.95) -> None:
     """Write the page.
@@ -86,13 +84,9 @@ def _sections(*, paper: bool) -> list[tuple[str, str]]:
     ]
 
 
-def _scores(board: Leaderboard) -> list[str]:
-    return [board.by, *(name for name in _BESIDE if name != board.by)]
-
-
 def _columns(board: Leaderboard) -> list[tuple[str, bool]]:
     """Labels, and whether the column is one of numbers."""
-    told = [(name, True) for name in _scores(board)]
+    told = [(name.replace("_", " "), True) for name in board.shown]
     return [("place", False), ("entrant", False), ("agent", False), *told, ("failed runs", True)]
 
 
@@ -100,7 +94,7 @@ def _rows(results: Results, board: Leaderboard) -> Iterator[dict[str, Any]]:
     agents = {one["name"]: one["agent"] for one in results.config["entrants"]}
     for order, one in enumerate(board.standings):
         numbers = []
-        for name in _scores(board):
+        for name in board.shown:
             value, low, high = one.scores[name]
             form = f"{{:,.{decimals(name)}f}}"
             ends = "" if math.isnan(low) else f" [{form.format(low)}, {form.format(high)}]"

@@ -24,8 +24,6 @@ _HEADERS = {
     "length": "length",
     "iterations": "iterations",
 }
-_USUAL = ("steps", "accuracy", "length", "iterations")
-_BESIDE = {"regret": ("regret_median", "regret_90", "accuracy", "iterations")}
 _NAME = 20  # columns that a long name has at least, in a narrow terminal
 
 
@@ -63,12 +61,11 @@ def _heading(results: Results, confidence: float) -> str:
 
 def _leaderboard(board: Leaderboard) -> Table:
     """One line an entrant; the score that decides comes first, with its interval."""
-    others = [name for name in _BESIDE.get(board.by, _USUAL) if name != board.by]
     table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
     table.add_column("place", no_wrap=True)
     widest = max(len(one.entrant) for one in board.standings)
     table.add_column("entrant", overflow="fold", min_width=min(widest, _NAME))
-    for name in (board.by, *others):
+    for name in board.shown:
         table.add_column(_HEADERS[name], justify="right", no_wrap=True)
     for one in board.standings:
         decisive = one.scores[board.by]
@@ -76,7 +73,7 @@ def _leaderboard(board: Leaderboard) -> Table:
             one.places,
             Text(one.entrant),
             interval_text(decisive.value, decisive.high - decisive.value, decimals(board.by)),
-            *(interval_text(one.scores[name].value, math.nan, decimals(name)) for name in others),
+            *(interval_text(one.scores[name].value, math.nan, decimals(name)) for name in board.shown[1:]),
         )
     return table
 

@@ -107,7 +107,7 @@ def test_ppo_on_the_single_car() -> None:
 
 
 def test_dqn_on_the_single_car() -> None:
-    """``DQN`` learns on one single car"""
+    """``DQN`` learns on one single car, on an easier hill"""
     model = DQN("MlpPolicy", single_cars(1, seed=1), seed=1, **OFF_POLICY, **SMALL).learn(8000)
     assert evaluate_policy(model, single_cars(4, seed=2), n_eval_episodes=20)[0] > -40
 
@@ -121,7 +121,7 @@ def test_ppo_on_cars_of_pettingzoo() -> None:
 
 
 def test_dqn_on_cars_of_pettingzoo() -> None:
-    """``DQN`` learns through SuperSuit on four cars that end at different times"""
+    """``DQN`` learns through SuperSuit on four cars that end at different times, on an easier hill"""
     set_random_seed(1)
     model = DQN("MlpPolicy", many_cars(4, NEAR), **OFF_POLICY, **SMALL).learn(16_000)
     assert steps_of(lambda seen: model.predict(seen, deterministic=True)[0], NEAR) < 40

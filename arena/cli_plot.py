@@ -125,7 +125,8 @@ def _pairs(results: Results, named: list[str] | None, _replicate: int, by: str) 
     from arena.scores import scores_of
 
     _all(named)
-    return _figure_of(draw_pairs(scores_of(results, by), _counted(leaderboard(results, by))))
+    scores = scores_of(results, by)
+    return _figure_of(draw_pairs(scores, _counted(leaderboard(results, by, scores=scores))))
 
 
 _DRAW: dict[Kind, Callable[..., "Figure"]] = {

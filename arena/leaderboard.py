@@ -93,7 +93,9 @@ class Leaderboard:
         return pd.DataFrame(rows)
 
 
-def leaderboard(results: Results, by: str = "steps", confidence: float = 0.95) -> Leaderboard:
+def leaderboard(
+    results: Results, by: str = "steps", confidence: float = 0.95, scores: Scores | None = None
+) -> Leaderboard:
     """The entrants of a tournament in the order of their scores.
 
     Args:
@@ -101,12 +103,13 @@ def leaderboard(results: Results, by: str = "steps", confidence: float = 0.95) -
         by: a name in ``arena.scores.SCORES``.
         confidence: of the intervals and the places. Places of an adaptive tournament are tested at the
             level of its last look, whatever is asked.
+        scores: what ``scores_of(results, by)`` returns, where that is there already.
 
     Raises:
         ValueError: when there is no such score, or the confidence is not between 0 and 1.
     """
     check_confidence(confidence)
-    scores = scores_of(results, by)
+    scores = scores_of(results, by) if scores is None else scores
     costs = scores.costs(by)
     entrants, count = costs.shape
     places_at, remarks = _places_at(results.config, scores, confidence)

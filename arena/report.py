@@ -10,7 +10,7 @@ from arena.builtin import BUILT_IN
 from arena.comparison import MINIMUM_ACCURACY, compare
 from arena.curves import WINDOW
 from arena.digest import digest
-from arena.leaderboard import Leaderboard, leaderboard
+from arena.leaderboard import Leaderboard, check_confidence, leaderboard
 from arena.page_data import MOST_DRAWN, page_data
 from arena.paper_claims import results_claims
 from arena.results import Results
@@ -43,7 +43,9 @@ def report(results: Results, by: str = "steps", confidence: float = 0.95) -> str
     )
     environment.filters["told"] = _told
     environment.filters["pretty"] = lambda value: json.dumps(value, indent=1)
-    board, scores = leaderboard(results, by, confidence), scores_of(results, by)
+    check_confidence(confidence)
+    scores = scores_of(results, by)
+    board = leaderboard(results, by, confidence, scores)
     data = page_data(results, scores, board)
     paper, config = compare(results), results.config
     return environment.get_template("page.html").render(

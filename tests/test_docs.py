@@ -29,9 +29,13 @@ def succeed(*arguments: str, cwd: Path) -> str:
 
 
 def blocks(language: str) -> list[object]:
-    """The code blocks of all pages in ``language``, as parameters of a test."""
+    """The code blocks of all pages in ``language``, as parameters of a test; Python of docs is slow."""
     return [
-        pytest.param(code, id=f"{page.name}-{number}")
+        pytest.param(
+            code,
+            id=f"{page.name}-{number}",
+            marks=[pytest.mark.slow] if language == "python" and page != PAGES[0] else [],
+        )
         for page in PAGES
         if page != SESSION
         for number, code in enumerate(re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL))

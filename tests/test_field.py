@@ -22,6 +22,7 @@ def test_every_built_in_agent_that_races_in_a_moment_is_in_the_field() -> None:
     assert {name for name, agent in BUILT_IN.items() if agent not in entered} <= slow
 
 
+@pytest.mark.slow
 def test_the_field_races_compiled() -> None:
     short = Tournament(
         field(replicates=1).entrants,

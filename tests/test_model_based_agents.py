@@ -511,6 +511,7 @@ COMPILED: list[tuple[type[Any], dict[str, Any]]] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("cls", "parameters"), COMPILED, ids=[cls.__name__ for cls, _ in COMPILED])
 def test_compiled_agents_allocate_nothing_and_leave_the_interpreters_bits(
     cls: type[Any], parameters: dict[str, Any]

@@ -62,14 +62,12 @@ class Fleet:
             raise
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but the loop: a copy begins its own. The views on arrays are made anew."""
-        views = ("driving", "actions", "observations", "rewards", "terminated")
-        rest = {name: value for name, value in self.__dict__.items() if name not in views}
-        return rest | {"_next": None}
+        """All but the loop: a copy begins its own."""
+        return self.__dict__ | {"_next": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self.drive(self._numbers[: self._count[0]].copy())
+        self.drive(self.driving)  # views of the arrays of the copy
 
     def _loop(self) -> Callable[[], int]:
         results = (self._observations, self._rewards, self._terminated)

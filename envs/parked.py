@@ -2,14 +2,10 @@
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 from pettingzoo.utils import BaseParallelWrapper
 
 from envs.checks import choice
-
-Observation = NDArray[np.float64]
 
 FLAGS = ("kept", "together")
 
@@ -38,7 +34,7 @@ class Parked(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, Observation], dict[str, dict[str, Any]]]:
+    ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         """As of the environment."""
         observations, infos = self.env.reset(seed=seed, options=options)
         self.agents = list(observations)
@@ -50,23 +46,21 @@ class Parked(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
     def step(self, actions: dict[str, Any]) -> tuple[dict[str, Any], ...]:
         """Step those that go on; answers for all."""
         told = list(self.agents)
-        driving = {car: actions[car] for car in self.env.agents}
-        observations, rewards, terminations, truncations, infos = self.env.step(driving)
+        driving = {car: actions[car] for car in self.env.agents if car in actions}  # it tells who is missing
+        observations, rewards, terminated, truncated, infos = self.env.step(driving)
         self._seen |= observations
-        self._terminated |= terminations
-        self._truncated |= truncations
+        self._terminated |= terminated
+        self._truncated |= truncated
         over = not self.env.agents
         if over:
             self.agents = []
+        flags = self._terminated, self._truncated
         if self.flags == "together":
             late = any(self._truncated.values())
-            terminations, truncations = (dict.fromkeys(told, over and flag) for flag in (not late, late))
-        else:
-            terminations, truncations = self._terminated, self._truncated
+            flags = dict.fromkeys(told, over and not late), dict.fromkeys(told, over and late)
         return (
             {car: self._seen[car].copy() for car in told},
             {car: rewards.get(car, 0.0) for car in told},
-            dict(terminations),
-            dict(truncations),
+            *({car: flag[car] for car in told} for flag in flags),
             {car: infos.get(car, {}) for car in told},
         )

@@ -33,9 +33,6 @@ STEPS = 200
 ID = "envs:arena/MountainCar-v0"
 
 C = r"""
-#include <math.h>
-#include <stdint.h>
-
 void drive(int64_t cars, double *states, const int64_t *actions, int64_t *steps, uint64_t *chance,
            float *observations, double *rewards, uint8_t *terminated, uint8_t *truncated)
 {
@@ -46,13 +43,7 @@ void drive(int64_t cars, double *states, const int64_t *actions, int64_t *steps,
             x = -0.6 + 0.2 * ((*chance >> 11) * (1.0 / 9007199254740992.0)), v = 0.0;
             steps[car] = 0, rewards[car] = 0.0, terminated[car] = truncated[car] = 0;
         } else {
-            v += (actions[car] - 1) * 0.001 + cos(3.0 * x) * -0.0025;
-            if (v < -0.07) v = -0.07;
-            if (v > 0.07) v = 0.07;
-            x += v;
-            if (x < -1.2) x = -1.2;
-            if (x > 0.6) x = 0.6;
-            if (x == -1.2 && v < 0.0) v = 0.0;
+            move(&x, &v, actions[car]);
             steps[car]++, rewards[car] = -1.0;
             terminated[car] = x >= 0.5, truncated[car] = steps[car] >= 200;
             if (terminated[car] || truncated[car]) steps[car] = -1;
@@ -144,8 +135,8 @@ def vector(cars: Any, count: int, seconds: float) -> float:
 def check_c(drive: Any) -> None:
     """See that the loop in C drives as our vector does, to the bit."""
     ours, theirs, rng = gymnasium.make_vec(ID, 5), InC(drive, 5), np.random.default_rng(1)
-    ours.reset(seed=1)
-    theirs.states[:], theirs.steps[:] = ours.unwrapped._fleet.states, 0  # type: ignore[attr-defined] # noqa: SLF001 (float64)
+    ours.reset(seed=1, options={"start": (-0.5, 0.0)})
+    theirs.states[:], theirs.steps[:] = (-0.5, 0.0), 0
     for _ in range(STEPS):
         actions = rng.integers(3, size=5)
         for one, other in zip(ours.step(actions)[:4], theirs.step(actions)[:4], strict=True):

@@ -30,9 +30,6 @@ from envs.streams import stream
 MAX_STEPS = 1_000_000
 
 C = r"""
-#include <math.h>
-#include <stdint.h>
-
 typedef unsigned __int128 u128;
 static const u128 multiplier = ((u128)2549297995355413924ULL << 64) | 4865540595714422341ULL;
 
@@ -52,13 +49,7 @@ int64_t walk(const uint64_t *seeded, int64_t max_steps, double *bounds)
     int64_t steps = 0;
     while (steps < max_steps) {
         int action = (int)(next_double(&state, increment) * 3.0);
-        v += (action - 1) * 0.001 + cos(3.0 * x) * -0.0025;
-        if (v < -0.07) v = -0.07;
-        if (v > 0.07) v = 0.07;
-        x += v;
-        if (x < -1.2) x = -1.2;
-        if (x > 0.6) x = 0.6;
-        if (x == -1.2 && v < 0.0) v = 0.0;
+        move(&x, &v, action);
         steps++;
         if (x < least_x) least_x = x;
         if (x > most_x) most_x = x;

@@ -120,9 +120,14 @@ def test_a_small_paper_prints_both_tables(race: str, capsys: pytest.CaptureFixtu
         (["run", "race.toml", "--jobs", "0"], "--jobs must not be 0"),
         (
             ["run", "race.toml", "--jobs", "two"],
-            "parse string as an integer, got 'two'",
+            "Invalid value for '--jobs': Input should be a valid integer, "
+            "unable to parse string as an integer, got 'two'",
         ),
-        (["run", "race.toml", "--jobs=a"], "parse string as an integer, got 'a'"),
+        (
+            ["run", "race.toml", "--jobs=a"],
+            "Invalid value for '--jobs': Input should be a valid integer, "
+            "unable to parse string as an integer, got 'a'",
+        ),
         (["run", "race.toml", "--replicates", "0"], "race.toml: replicates must be at least 1, got 0"),
         (["run", "race.toml", "--seed", "-1"], "race.toml: seed must be at least 0, got -1"),
         (["run", "race.toml", "--driver", "fast"], "Invalid value for '--driver'"),

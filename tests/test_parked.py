@@ -25,6 +25,7 @@ def test_all_cars_are_told_of_until_all_have_ended(flags: str) -> None:
             assert rewards == {car: -1.0 if car in live else 0.0 for car in last}
             assert list(infos) == list(last)
             assert parked.agents == ([] if step == 5 else list(last))
+        assert parked.step({}) == ({}, {}, {}, {}, {})
 
 
 def told(flags: str, cars: int, steps: int) -> list[tuple[list[bool], list[bool]]]:
@@ -65,3 +66,10 @@ def test_what_a_client_changes_in_an_observation_stays_its_own() -> None:
 def test_other_flags_are_refused() -> None:
     with pytest.raises(ValueError, match=r"flags must be .*'never'"):
         Parked(parallel_env(), "never")
+
+
+def test_a_missing_action_is_told_as_without_it() -> None:
+    parked = Parked(parallel_env(2))
+    parked.reset(seed=1)
+    with pytest.raises(ValueError, match="actions must have one for each live car, got none for 'car_1'"):
+        parked.step({"car_0": 2})

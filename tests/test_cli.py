@@ -104,6 +104,11 @@ def test_a_small_paper_prints_both_tables(race: str, capsys: pytest.CaptureFixtu
     assert len(told["paper"]["cells"]) == 32
 
 
+NO_INTEGER = (
+    "Invalid value for '--jobs': Input should be a valid integer, unable to parse string as an integer"
+)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -120,13 +125,11 @@ def test_a_small_paper_prints_both_tables(race: str, capsys: pytest.CaptureFixtu
         (["run", "race.toml", "--jobs", "0"], "--jobs must not be 0"),
         (
             ["run", "race.toml", "--jobs", "two"],
-            "Invalid value for '--jobs': Input should be a valid integer, "
-            "unable to parse string as an integer, got 'two'",
+            f"{NO_INTEGER}, got 'two'",
         ),
         (
             ["run", "race.toml", "--jobs=a"],
-            "Invalid value for '--jobs': Input should be a valid integer, "
-            "unable to parse string as an integer, got 'a'",
+            f"{NO_INTEGER}, got 'a'",
         ),
         (["run", "race.toml", "--replicates", "0"], "race.toml: replicates must be at least 1, got 0"),
         (["run", "race.toml", "--seed", "-1"], "race.toml: seed must be at least 0, got -1"),

@@ -12,7 +12,6 @@ when they end at different times, and DQN for the single car, in its vector and 
 
 import subprocess
 import sys
-from collections.abc import Iterator
 from contextlib import closing
 from typing import Any
 
@@ -29,18 +28,11 @@ from agilerl.training.train_off_policy import train_off_policy  # type: ignore[i
 from agilerl.utils.utils import make_multi_agent_vect_envs, make_vect_envs  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from agilerl.vector import PzDummyVecEnv  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from agilerl.wrappers.agent import AsyncAgentsWrapper  # type: ignore[import-not-found, unused-ignore]  # its own environment
+from clients.apart import Apart
 from clients.countdown import Countdown
-from pettingzoo.utils import BaseParallelWrapper
 
 from envs import mountain_car_v0
 from envs.parked import Parked
-
-
-class Apart(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
-    """``car_0`` starts before the goal and ends at once, ``car_1`` drives until it is truncated."""
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        return self.env.reset(seed, {"start": {"car_0": (0.49, 0.05)}})
 
 
 class Recorded(IPPO):  # type: ignore[misc, unused-ignore]  # the base is untyped
@@ -51,12 +43,7 @@ class Recorded(IPPO):  # type: ignore[misc, unused-ignore]  # the base is untype
         return super().learn(experiences)
 
 
-@pytest.fixture(autouse=True)
-def one_thread() -> Iterator[None]:
-    threads = torch.get_num_threads()
-    torch.set_num_threads(1)
-    yield
-    torch.set_num_threads(threads)
+torch.set_num_threads(1)
 
 
 def apart(**arguments: Any) -> Any:

@@ -17,7 +17,8 @@ import gymnasium
 import pettingzoo
 import pytest
 import ray  # type: ignore[import-not-found, unused-ignore]  # its own environment
-from pettingzoo.utils import BaseParallelWrapper, parallel_to_aec
+from clients.apart import Apart
+from pettingzoo.utils import parallel_to_aec
 from ray.rllib.algorithms.ppo import PPOConfig  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from ray.rllib.env.multi_agent_episode import MultiAgentEpisode  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner  # type: ignore[import-not-found, unused-ignore]  # its own environment
@@ -41,13 +42,6 @@ class Cars(ParallelPettingZooEnv):  # type: ignore[misc, unused-ignore]  # the b
         over = not self.par_env.agents
         late = over and any(truncated.values())
         return observations, rewards, terminated | {"__all__": over and not late}, {"__all__": late}, infos
-
-
-class Apart(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
-    """``car_0`` starts before the goal and ends at once, ``car_1`` drives until it is truncated."""
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        return self.env.reset(seed, {"start": {"car_0": (0.49, 0.05)}})
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -10,7 +10,6 @@
 also when they end at different times, and DQN for the single car in its vectors of environments.
 """
 
-from collections.abc import Iterator
 from contextlib import closing
 from typing import Any
 
@@ -18,8 +17,9 @@ import gymnasium
 import numpy as np
 import pytest
 import torch  # type: ignore[import-not-found, unused-ignore]  # its own environment
+from clients.apart import Apart
 from clients.countdown import Countdown
-from pettingzoo.utils import BaseParallelWrapper, parallel_to_aec
+from pettingzoo.utils import parallel_to_aec
 from tianshou.algorithm import DQN  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from tianshou.algorithm.modelfree.dqn import DiscreteQLearningPolicy  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from tianshou.algorithm.multiagent.marl import MultiAgentOffPolicyAlgorithm  # type: ignore[import-not-found, unused-ignore]  # its own environment
@@ -32,20 +32,7 @@ from tianshou.utils.net.common import Net  # type: ignore[import-not-found, unus
 from envs import mountain_car_v0
 from envs.parked import Parked
 
-
-class Apart(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
-    """``car_0`` starts before the goal and ends at once, ``car_1`` drives until it is truncated."""
-
-    def reset(self, seed: int | None = None, options: Any = None) -> Any:
-        return self.env.reset(seed, {"start": {"car_0": (0.49, 0.05)}})
-
-
-@pytest.fixture(autouse=True)
-def one_thread() -> Iterator[None]:
-    threads = torch.get_num_threads()
-    torch.set_num_threads(1)
-    yield
-    torch.set_num_threads(threads)
+torch.set_num_threads(1)
 
 
 def dqn(env: Any, **settings: Any) -> Any:

@@ -1,13 +1,13 @@
 """Agents and their parts: discretizations, schedules, one algorithm a file."""
 
+from agents.algorithms.q_learning import QLearning
+from agents.algorithms.sarsa import Sarsa
+from agents.baselines import MomentumAgent, RandomAgent
 from agents.contract import Agent, Task
-from agents.exploration import Softmax, UpperConfidence
-from agents.grid import Grid
-from agents.q_learning import QLearning
-from agents.references import MomentumAgent, RandomAgent
+from agents.discretization.grid import Grid
+from agents.learning.exploration import Softmax, UpperConfidence
+from agents.learning.schedules import HarmonicRate, LinearDecay
 from agents.registry import agent_class, agent_name, register
-from agents.sarsa import Sarsa
-from agents.schedules import HarmonicRate, LinearDecay
 
 __all__ = [
     "Agent",

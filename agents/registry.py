@@ -10,26 +10,26 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from agents.algorithms.double_q_learning import DoubleQLearning
+from agents.algorithms.dyna_q import DynaQ
+from agents.algorithms.expected_sarsa import ExpectedSarsa
+from agents.algorithms.fitted_q_iteration import FittedQIteration
+from agents.algorithms.monte_carlo import MonteCarlo
+from agents.algorithms.n_step_sarsa import NStepSarsa
+from agents.algorithms.prioritized_sweeping import PrioritizedSweeping
+from agents.algorithms.q_learning import QLearning
+from agents.algorithms.r_max import RMax
+from agents.algorithms.sarsa import Sarsa
+from agents.algorithms.sarsa_lambda import SarsaLambda
+from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
+from agents.algorithms.true_online_sarsa import TrueOnlineSarsa
+from agents.algorithms.tutorial import TutorialQLearning
+from agents.algorithms.value_iteration import GridPlanner
+from agents.algorithms.watkins_q_lambda import WatkinsQLambda
+from agents.baselines import MomentumAgent, RandomAgent, XiaoAgent
 from agents.contract import Agent
-from agents.double_q_learning import DoubleQLearning
-from agents.dyna_q import DynaQ
-from agents.expected_sarsa import ExpectedSarsa
-from agents.fitted_q_iteration import FittedQIteration
-from agents.monte_carlo import MonteCarlo
-from agents.n_step_sarsa import NStepSarsa
-from agents.optimal import Optimal
-from agents.prioritized_sweeping import PrioritizedSweeping
-from agents.q_learning import QLearning
-from agents.r_max import RMax
-from agents.references import MomentumAgent, RandomAgent, XiaoAgent
-from agents.sarsa import Sarsa
-from agents.sarsa_lambda import SarsaLambda
-from agents.semi_gradient_sarsa import SemiGradientSarsa
-from agents.true_online_sarsa import TrueOnlineSarsa
-from agents.tutorial import TutorialQLearning
-from agents.value_iteration import GridPlanner
-from agents.watkins_q_lambda import WatkinsQLambda
-from envs.checks import choice
+from agents.optimal.driver import Optimal
+from envs.foundation.checks import choice
 
 GROUP = "arena.agents"
 

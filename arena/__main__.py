@@ -1,5 +1,5 @@
 """``python -m arena`` is the command ``arena``."""
 
-from arena.cli import entry
+from arena.cli.main import entry
 
 entry()

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from envs.compilation import CompilationError, entry_point
+from envs.compilation.kernels import CompilationError, entry_point
 from envs.hill import Hill
 
 Floats = NDArray[np.float64]

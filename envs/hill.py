@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from envs.checks import Validated, choice, number
+from envs.foundation.checks import Validated, choice, number
 
 State = tuple[float, float]
 

@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 
-from envs.checks import choice, instance, integer
 from envs.fleet import Fleet
+from envs.foundation.checks import choice, instance, integer
+from envs.foundation.streams import stream
 from envs.hill import Hill, State
 from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Rendered
 from envs.starts import checked_state
-from envs.streams import stream
 
 __all__ = ["env", "parallel_env", "raw_env"]
 

@@ -5,7 +5,7 @@ from typing import Any
 from pettingzoo import ParallelEnv
 from pettingzoo.utils import BaseParallelWrapper
 
-from envs.checks import choice
+from envs.foundation.checks import choice
 
 FLAGS = ("kept", "together")
 

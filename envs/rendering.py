@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from PIL import ImageDraw
     from PIL.Image import Image as Canvas
 
+
 RENDER_MODES = ("human", "rgb_array", "ansi")
 FRAMES_PER_SECOND = 30
 SIZE = (600, 400)

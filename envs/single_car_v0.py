@@ -12,7 +12,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from envs.checks import choice, instance, integer
+from envs.foundation.checks import choice, instance, integer
 from envs.hill import Hill, State
 from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Rendered
 from envs.starts import start_state

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from envs.checks import number
+from envs.foundation.checks import number
 from envs.hill import Hill, State
 
 

@@ -15,8 +15,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from envs.checks import choice, instance, integer
 from envs.fleet import Flags, Fleet, Floats
+from envs.foundation.checks import choice, instance, integer
 from envs.hill import Hill
 from envs.rendering import FRAMES_PER_SECOND, Image, picture
 from envs.starts import start_state

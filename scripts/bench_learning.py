@@ -19,9 +19,9 @@ import numba
 import numpy as np
 
 from agents import Grid, QLearning, Sarsa
-from arena.loops import listener, train
+from arena.execution.loops import listener, train
 from envs import Hill
-from envs.compilation import compile_loop
+from envs.compilation.kernels import compile_loop
 
 
 @numba.njit(nogil=True, error_model="numpy")

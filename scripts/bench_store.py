@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 from arena import run
-from arena.builtin import paper
+from arena.tournament.builtin import paper
 
 
 def seconds(replicates: int, out: Path | None) -> float:

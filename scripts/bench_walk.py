@@ -24,8 +24,8 @@ import numpy as np
 from c_loops import built
 
 from arena import random_walk
-from arena.walk_study import PAPER, PAPER_SECONDS
-from envs.streams import stream
+from arena.reproduction.published import PAPER, PAPER_SECONDS
+from envs.foundation.streams import stream
 
 MAX_STEPS = 1_000_000
 

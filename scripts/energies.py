@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arena.palette import LINES
+from arena.figures.style import LINES
 from envs import Dynamics, Hill
 
 COAST = 1

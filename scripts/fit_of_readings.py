@@ -9,9 +9,8 @@ how far one replicate is from the mean of the others: no reading can be expected
 import argparse
 
 from arena import paper, run
-from arena.comparison import compare
-from arena.paper_tables import iterations_spread, paper_tables
-from arena.readings import READINGS
+from arena.reproduction.tables import compare, iterations_spread, paper_tables
+from arena.tournament.readings import READINGS
 
 
 def main() -> None:

@@ -16,15 +16,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from arena.adaptive import decided, looks
-from arena.places import holm, paired_permutation_test, sign_flip_test, smallest_p, tie_groups
-from arena.statistics import (
+from arena.statistics.intervals import (
     Estimate,
     bootstrap_interval,
     interquartile_mean,
     mean_estimate,
     probability_of_improvement,
 )
+from arena.statistics.permutation import holm, paired_permutation_test, sign_flip_test, smallest_p
+from arena.statistics.ranks import tie_groups
+from arena.statistics.sequential import decided, looks
 
 Floats = NDArray[np.float64]
 Draw = Callable[[np.random.Generator, tuple[int, ...]], Floats]

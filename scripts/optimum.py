@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.optimal import NEVER, Optimal, optimal_steps
-from agents.value_iteration import GridPlanner
-from arena.loops import evaluate
+from agents.algorithms.value_iteration import GridPlanner
+from agents.optimal.driver import Optimal
+from agents.optimal.fewest_steps import NEVER, optimal_steps
+from arena.execution.loops import evaluate
 from envs import Hill
-from envs.compilation import compile_loop
+from envs.compilation.kernels import compile_loop
 
 Steps = NDArray[np.int64]
 PATIENCE = 500

@@ -21,9 +21,8 @@ import optuna
 
 from agents import HarmonicRate, LinearDecay, QLearning, Sarsa
 from arena import Results, Tournament, run, sweep
-from arena.builtin import PAPER_BINS
-from arena.comparison import compare
-from arena.paper_tables import iterations_spread, paper_tables
+from arena.reproduction.tables import compare, iterations_spread, paper_tables
+from arena.tournament.builtin import PAPER_BINS
 from envs import Hill
 
 STUDY = "sqlite:///runs/readings.sqlite"

@@ -19,8 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.sarsa_lambda import SarsaLambda
-from agents.semi_gradient_sarsa import SemiGradientSarsa
+from agents.algorithms.sarsa_lambda import SarsaLambda
+from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
 from arena import Entrant, Evaluation, Results, Tournament, Training, run
 from envs import Hill
 

@@ -17,9 +17,9 @@ from typing import Any
 import optuna
 
 from agents import HarmonicRate, LinearDecay, agent_class
-from agents.exploration import Softmax, UpperConfidence
+from agents.learning.exploration import Softmax, UpperConfidence
 from arena import Entrant, Evaluation, Tournament, Training, run
-from arena.entrant import plain
+from arena.common.plain import plain
 
 TRAINING = Training(episodes=2000, max_steps=2000)
 EVALUATION = Evaluation(episodes=500)

@@ -8,8 +8,9 @@ import numpy as np
 
 from agents import MomentumAgent
 from arena import Entrant, Evaluation, Results, Tournament, Training
-from arena.outcome import Outcome, pack
-from arena.store import Store
+from arena.common.npz import pack
+from arena.results.store import Store
+from arena.tournament.outcome import Outcome
 
 LIMIT = 500
 

@@ -15,12 +15,12 @@ from test_drivers import told
 
 from agents import MomentumAgent, QLearning, RandomAgent
 from arena import Entrant, Evaluation, Tournament, Training, load, run
-from arena.adaptive import Look, decided, looks
-from arena.cli import main
-from arena.configuration import from_dict
-from arena.digest import digest
-from arena.leaderboard import leaderboard
-from arena.places import smallest_p
+from arena.analysis.standings import leaderboard
+from arena.cli.main import main
+from arena.results.digests import digest
+from arena.statistics.permutation import smallest_p
+from arena.statistics.sequential import Look, decided, looks
+from arena.tournament.configuration import from_dict
 
 
 def race(*entrants: Entrant, **arguments: Any) -> Tournament:
@@ -214,7 +214,7 @@ def test_the_command_line(
 @settings(max_examples=30, deadline=None)
 @given(data=st.data())
 def test_a_damaged_configuration_is_told(data: st.DataObject) -> None:
-    from arena.store import _sound
+    from arena.results.schema import _sound
 
     config = json.loads(json.dumps(race().to_dict()))
     assert _sound(config)
@@ -226,7 +226,7 @@ def test_a_damaged_configuration_is_told(data: st.DataObject) -> None:
 
 
 def test_the_gate_takes_adaptive_files_of_unlike_length() -> None:
-    from arena.pairs import regressions
+    from arena.analysis.pairwise import regressions
 
     values = [100.0 + n for n in range(10)]
     with made_up({"a": values}, replicates=10) as old, made_up({"a": [*values, 1.0]}, replicates=11) as new:

@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from agents import Grid, QLearning
-from agents.cells import Cells, EdgeGrid, Voronoi, _visited, make_cells
+from agents.discretization.cells import Cells, _visited, make_cells
+from agents.discretization.edge_grid import EdgeGrid
+from agents.discretization.voronoi import Voronoi
 from envs import Hill
 
 HILL = Hill()

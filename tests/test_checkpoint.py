@@ -12,11 +12,12 @@ import pytest
 from hand_made_agents import Leaky, Scripted, race_of
 
 from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
-from arena import Entrant, compiled_driver, load, pettingzoo_driver, run
-from arena.checkpoint import Checkpoint, file_of, savable
-from arena.digest import digest
-from arena.outcome import Outcome
-from arena.tournament import Conditions, Run
+from arena import Entrant, load, run
+from arena.execution import compiled_driver, pettingzoo_driver
+from arena.execution.checkpoint import Checkpoint, file_of, savable
+from arena.results.digests import digest
+from arena.tournament.conditions import Conditions, Run
+from arena.tournament.outcome import Outcome
 from envs import Hill
 
 AGENTS = {

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from arena import load
-from arena.cli import main
+from arena.cli.main import main
 
 RACE = """
 name = "race"
@@ -200,7 +200,7 @@ def test_importing_the_packages_loads_nothing_heavy() -> None:
     code = "import sys, arena, agents, envs; print(*sys.modules)"
     command = [sys.executable, "-c", code]
     loaded = set(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split())
-    assert "arena.runner" in loaded
+    assert "arena.execution.runner" in loaded
     heavy = {"numba", "pettingzoo", "gymnasium", "pandas", "matplotlib", "scipy", "joblib", "typer", "rich"}
     assert loaded & heavy == set()
 

@@ -9,8 +9,8 @@ from PIL import Image
 
 from agents import MomentumAgent, RandomAgent, Sarsa
 from arena import Entrant, Evaluation, Tournament, Training, run
-from arena.cli import main
-from arena.cli_plot import Kind
+from arena.cli.main import main
+from arena.cli.plot import Kind
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from made_up_results import made_up
 
-from arena.cli import main
-from arena.cli_results import By
-from arena.scores import SCORES
+from arena.analysis.scores import SCORES
+from arena.cli.main import main
+from arena.cli.options import By
 
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0, 9.0, 8.0]
 OLD = {"a": [100.0 + n for n in NOISE], "b": [130.0 + n for n in NOISE], "gone": NOISE}

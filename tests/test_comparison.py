@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from arena import Evaluation, Results, Training, paper, quick, run
-from arena.comparison import compare, published
-from arena.outcome import Outcome
-from arena.statistics import correlation, mean_interval
-from arena.store import Store
+from arena.reproduction.published import published
+from arena.reproduction.tables import compare
+from arena.results.store import Store
+from arena.statistics.intervals import correlation, mean_interval
+from arena.tournament.outcome import Outcome
 
 
 def test_the_published_tables_are_the_paper_s() -> None:

@@ -11,8 +11,8 @@ import pytest
 
 from agents import QLearning, Sarsa
 from envs import Hill
-from envs.compilation import CompilationError, compile_loop
-from envs.reachable import Reached
+from envs.compilation.kernels import CompilationError, compile_loop
+from envs.compilation.reachable import Reached
 
 PLUGIN = """
 from typing import NamedTuple

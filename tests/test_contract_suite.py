@@ -15,12 +15,12 @@ from hand_made_agents import Leaky, Scripted, Uncompilable
 from numpy.typing import NDArray
 
 from agents import registry
-from agents.references import DoesNotLearn
+from agents.baselines import DoesNotLearn
 from agents.registry import all_agents
 from arena import Entrant
-from arena.cli import main
-from arena.contract_checks import CHECKS, Check
-from arena.testing import check_agent, findings, parametrize_with_checks
+from arena.cli.main import main
+from arena.testing.checks import CHECKS, Check
+from arena.testing.suite import check_agent, findings, parametrize_with_checks
 
 Table = NDArray[np.float64]
 NAMES = [check.__name__.removeprefix("check_").replace("_", " ") for check in CHECKS]

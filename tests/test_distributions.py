@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from arena.distributions import FAMILIES, Fit, fit_all
+from arena.walks.distributions import FAMILIES, Fit, fit_all
 
 FEW = [1.0, 2.0, 3.0, 6.0]
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from test_plugins import BROKEN
 
-from arena.configuration import from_dict
-from arena.readings import READINGS
+from arena.tournament.configuration import from_dict
+from arena.tournament.readings import READINGS
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

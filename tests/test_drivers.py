@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from agents import HarmonicRate, LinearDecay, QLearning, Sarsa
 from agents.registry import BUILT_IN
 from arena import Entrant, Evaluation, Results, Tournament, Training, run
-from arena.readings import READINGS
+from arena.tournament.readings import READINGS
 from envs import Hill
 
 SCORES = ["entrant", "replicate", "accuracy", "mean_length", "iterations", "status"]

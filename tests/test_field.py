@@ -10,8 +10,8 @@ import pytest
 
 from agents.registry import BUILT_IN
 from arena import Evaluation, Tournament, Training, field, run
-from arena.configuration import load_tournament
-from arena.statistics import mean_interval
+from arena.statistics.intervals import mean_interval
+from arena.tournament.configuration import load_tournament
 
 FIXED = ["tutorial", "xiao", "momentum", "random", "value-iteration", "optimal"]
 

@@ -14,19 +14,20 @@ from matplotlib.colors import LogNorm, to_hex
 from matplotlib.figure import Figure
 
 from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
-from agents.sarsa_lambda import SarsaLambda
+from agents.algorithms.sarsa_lambda import SarsaLambda
 from arena import Entrant, Evaluation, Results, Tournament, Training, run, sweep
-from arena.curves import moving_average
-from arena.figures_learning import draw_learning
-from arena.figures_policy import draw_phase, draw_policy, draw_value, draw_visits
-from arena.figures_scores import draw_intervals, draw_pairs, draw_ranks, draw_regret
-from arena.figures_sweep import draw_sweep
-from arena.leaderboard import leaderboard
-from arena.maps import FINE
-from arena.palette import LINES
-from arena.scores import scores_of
-from arena.statistics import probability_of_improvement
-from arena.trained import UnknownPolicyError, trained
+from arena.analysis.curves import moving_average
+from arena.analysis.policy_map import FINE
+from arena.analysis.scores import scores_of
+from arena.analysis.standings import leaderboard
+from arena.figures.learning import draw_learning
+from arena.figures.policy import draw_phase, draw_policy, draw_value, draw_visits
+from arena.figures.scores import draw_intervals, draw_pairs, draw_ranks, draw_regret
+from arena.figures.style import LINES
+from arena.figures.sweep import draw_sweep
+from arena.results.results import trained
+from arena.results.trained import UnknownPolicyError
+from arena.statistics.intervals import probability_of_improvement
 
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0]
 STEPS = {

@@ -12,14 +12,15 @@ from made_up_results import LIMIT, made_up
 from rich.console import Console
 
 from agents import MomentumAgent, RandomAgent
-from agents.optimal import Optimal, optimal_steps
+from agents.optimal.driver import Optimal
+from agents.optimal.fewest_steps import optimal_steps
 from arena import Entrant, Evaluation, Results, Tournament, Training, run
-from arena.curves import learning_curves
-from arena.leaderboard import leaderboard
-from arena.pairs import compare_entrants, regressions
-from arena.scores import SCORES, scores_of
-from arena.statistics import mean_estimate
-from arena.tables import render
+from arena.analysis.curves import learning_curves
+from arena.analysis.pairwise import compare_entrants, regressions
+from arena.analysis.scores import SCORES, scores_of
+from arena.analysis.standings import leaderboard
+from arena.report.tables import render
+from arena.statistics.intervals import mean_estimate
 from envs import Hill
 
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0, 9.0, 8.0]

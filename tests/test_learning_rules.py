@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from agents import Grid, HarmonicRate, LinearDecay, MomentumAgent, QLearning, RandomAgent, Sarsa
-from agents.exploration import EpsilonGreedy
-from agents.policies import best_action, epsilon_greedy
+from agents.learning.action_values import best_action, epsilon_greedy
+from agents.learning.exploration import EpsilonGreedy
 from envs import Hill
 
 CLASSES = [QLearning, Sarsa]

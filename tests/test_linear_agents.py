@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from test_drivers import told
 
 from agents import Grid, HarmonicRate, LinearDecay, Sarsa
-from agents.linear import epsilon_greedy_of
-from agents.sarsa_lambda import SarsaLambda
-from agents.semi_gradient_sarsa import SemiGradientSarsa
-from agents.tile_coding import TileCoding
-from agents.traces import NEGLIGIBLE
-from agents.true_online_sarsa import TrueOnlineSarsa
-from agents.watkins_q_lambda import WatkinsQLambda
+from agents.algorithms.linear import epsilon_greedy_of
+from agents.algorithms.sarsa_lambda import SarsaLambda
+from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
+from agents.algorithms.true_online_sarsa import TrueOnlineSarsa
+from agents.algorithms.watkins_q_lambda import WatkinsQLambda
+from agents.discretization.tile_coding import TileCoding
+from agents.learning.traces import NEGLIGIBLE
 from arena import Entrant, Evaluation, Tournament, Training, run
-from arena.loops import listener, train
+from arena.execution.loops import listener, train
 from envs import Hill
-from envs.compilation import cache_directory, compile_loop
-from envs.reachable import Reached
+from envs.compilation.kernels import cache_directory, compile_loop
+from envs.compilation.reachable import Reached
 
 Floats = NDArray[np.float64]
 Step = tuple[Any, int, float, Any, int, bool]  # the arguments of ``learn``

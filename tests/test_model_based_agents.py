@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from test_drivers import told
 from walks import A, B, Square, episodes, learn_all, make, table
 
-import agents.fitted_q_iteration
+import agents.algorithms.fitted_q_iteration
 from agents import HarmonicRate, QLearning
-from agents.batch import Batch
-from agents.cell_model import SUCCESSORS, CellModel
-from agents.dyna_q import DynaQ
-from agents.exploration import Softmax
-from agents.fitted_q_iteration import Fit, FittedQIteration, fitted
-from agents.forest import Forest
-from agents.parameters import parameters_of
-from agents.prioritized_sweeping import PrioritizedSweeping
-from agents.priority_queue import PriorityQueue
-from agents.r_max import RMax
+from agents.algorithms.dyna_q import DynaQ
+from agents.algorithms.fitted_q_iteration import Fit, FittedQIteration, fitted
+from agents.algorithms.prioritized_sweeping import PrioritizedSweeping
+from agents.algorithms.r_max import RMax
+from agents.learning.exploration import Softmax
+from agents.models.batch import Batch
+from agents.models.cell_model import SUCCESSORS, CellModel
+from agents.models.forest import Forest
+from agents.models.priority_queue import PriorityQueue
+from agents.parameters.declared import parameters_of
 from arena import Entrant, Evaluation, Tournament, Training, run
 from envs import Hill
 
@@ -338,7 +338,7 @@ def test_first_trees_are_randomized_and_later_ones_grown_to_the_values_found(
             grown.append((tries, targets))
             super().__init__(points, targets, tries, **parameters)
 
-    monkeypatch.setattr(agents.fitted_q_iteration, "Forest", Recorded)
+    monkeypatch.setattr(agents.algorithms.fitted_q_iteration, "Forest", Recorded)
     batch = chain_batch()
     wide = batch._replace(
         observations=np.repeat(batch.observations, 2, axis=1),
@@ -452,7 +452,7 @@ def test_same_seed_gives_the_same_bits() -> None:
 
 
 def test_missing_scikit_learn_is_told_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(agents.fitted_q_iteration, "find_spec", lambda name: None)
+    monkeypatch.setattr(agents.algorithms.fitted_q_iteration, "find_spec", lambda name: None)
     with pytest.raises(ImportError, match=r"needs scikit-learn: pip install 'mountain-car-arena\[trees\]'$"):
         FittedQIteration.create(Hill())
 

@@ -9,8 +9,8 @@ import pytest
 from page_tournament import HOSTILE, hostile_results
 
 from arena import Results, load, quick
-from arena.leaderboard import leaderboard
-from arena.trained import trained
+from arena.analysis.standings import leaderboard
+from arena.results.results import trained
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from types import ModuleType
 import pytest
 
 from arena import load_plugin
-from arena.own_modules import own_modules
+from arena.plugins.source_modules import own_modules
 
 AGENTS = """
 import os, sys

@@ -9,7 +9,7 @@ import pytest
 from page_tournament import HOSTILE, hostile_results
 
 from arena import load
-from arena.report import write_report
+from arena.report.page import write_report
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed")

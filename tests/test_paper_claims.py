@@ -11,20 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arena import Evaluation, Results, Training, paper, paper_claims, random_walk, run
-from arena.cli import main
-from arena.comparison import published
-from arena.outcome import Outcome, pack
-from arena.paper_tables import iterations_spread
-from arena.store import Store
-from arena.verdicts import (
-    Claim,
-    holds_claim,
-    measured_claim,
-    number_claim,
-    untestable_claim,
-)
-from arena.walks import RandomWalk
+from arena import Evaluation, Results, Training, paper, random_walk, run
+from arena.cli.main import main
+from arena.common.npz import pack
+from arena.reproduction import claims as paper_claims
+from arena.reproduction.published import published
+from arena.reproduction.tables import iterations_spread
+from arena.reproduction.verdicts import Claim, holds_claim, measured_claim, number_claim, untestable_claim
+from arena.results.store import Store
+from arena.tournament.outcome import Outcome
+from arena.walks.series import RandomWalk
 
 FALLING = np.concatenate([np.linspace(2000, 150, 2000), np.full(2000, 150.0)]).astype(np.int64)
 Change = Callable[[str, int], dict[str, Any]]

@@ -14,11 +14,11 @@ import pytest
 from page_tournament import HOSTILE, hostile_results
 from PIL import Image
 
-from agents.optimal import optimal_steps
+from agents.optimal.fewest_steps import optimal_steps
 from arena import Results, load
-from arena.cli import main
-from arena.race import GHOST, frames, race, save_race
-from arena.trained import trained
+from arena.cli.main import main
+from arena.figures.race import GHOST, frames, race, save_race
+from arena.results.results import trained
 from envs import Hill
 from envs.mountain_car_v0 import parallel_env
 from envs.rendering import SIZE

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from arena import InterruptedWalk, RandomWalk, random_walk
 from envs import Hill
-from envs.streams import stream
+from envs.foundation.streams import stream
 
 SCRIPTS = Path(__file__).parent.parent / "scripts"
 NEAR = Hill(goal_position=-0.35)
@@ -134,7 +134,7 @@ def test_after_an_interruption_no_episode_is_missing_among_those_that_are_left(
         raise KeyboardInterrupt
 
     expected = random_walk(25, NEAR, n_jobs=1)
-    monkeypatch.setattr("arena.walks.imap", out_of_order)
+    monkeypatch.setattr("arena.walks.series.imap", out_of_order)
     with pytest.raises(InterruptedWalk) as stopped:
         random_walk(100, NEAR)
     assert same(stopped.value.walk, expected)

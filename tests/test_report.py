@@ -11,14 +11,14 @@ import pytest
 from made_up_results import made_up
 from page_tournament import HOSTILE, hostile_results
 
-from agents.optimal import optimal_steps
+from agents.optimal.fewest_steps import optimal_steps
 from arena import load
-from arena.cli import main
-from arena.curves import moving_average
-from arena.digest import digest
-from arena.leaderboard import leaderboard
-from arena.report import report
-from arena.trained import trained
+from arena.analysis.curves import moving_average
+from arena.analysis.standings import leaderboard
+from arena.cli.main import main
+from arena.report.page import report
+from arena.results.digests import digest
+from arena.results.results import trained
 from envs import Hill
 
 
@@ -155,8 +155,8 @@ def test_unfinished_and_failed_tournaments_have_pages() -> None:
 
 
 def test_a_hundred_have_curves_and_all_have_places(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("arena.page_data.MOST_DRAWN", 2)
-    monkeypatch.setattr("arena.report.MOST_DRAWN", 2)
+    monkeypatch.setattr("arena.report.page_data.MOST_DRAWN", 2)
+    monkeypatch.setattr("arena.report.page.MOST_DRAWN", 2)
     with made_up({name: [100.0 + k] for k, name in enumerate("abcd")}) as results:
         page = report(results)
     assert len(data_of(page)["drawn"]) == 2

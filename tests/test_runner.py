@@ -8,7 +8,7 @@ from hand_made_agents import Astray, Failing, Leaky, Scripted, Uncompilable, rac
 from test_drivers import told
 
 from arena import Entrant, Tournament, load, run
-from arena.store import Store
+from arena.results.store import Store
 
 
 def test_a_results_file_is_continued_and_finished_runs_are_not_repeated(

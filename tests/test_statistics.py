@@ -14,26 +14,25 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import special, stats
 
-from arena.curves import area, moving_average, settled
-from arena.places import (
-    EXACT,
-    FLIPS,
-    holm,
-    needed_replicates,
-    paired_permutation_test,
-    rank_distribution,
-    sign_flip_test,
-    smallest_p,
-    tie_groups,
-    too_few,
-)
-from arena.statistics import (
+from arena.analysis.curves import area, moving_average, settled
+from arena.statistics.intervals import (
     bootstrap_interval,
     interquartile_mean,
     mean_estimate,
     mean_interval,
     probability_of_improvement,
 )
+from arena.statistics.permutation import (
+    EXACT,
+    FLIPS,
+    holm,
+    needed_replicates,
+    paired_permutation_test,
+    sign_flip_test,
+    smallest_p,
+    too_few,
+)
+from arena.statistics.ranks import rank_distribution, tie_groups
 
 NUMBERS = st.floats(-1e6, 1e6).map(lambda x: round(x, 3))
 

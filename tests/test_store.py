@@ -20,11 +20,12 @@ from hypothesis import strategies as st
 
 from agents import MomentumAgent, RandomAgent
 from arena import Entrant, Tournament, load, run
-from arena.comparison import compare
-from arena.digest import digest
-from arena.outcome import Outcome, pack, score, unpack
-from arena.store import SCHEMA_VERSION, Store
-from arena.tables import render
+from arena.common.npz import pack, unpack
+from arena.report.tables import render
+from arena.reproduction.tables import compare
+from arena.results.digests import digest
+from arena.results.store import SCHEMA_VERSION, Store
+from arena.tournament.outcome import Outcome, score
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from envs.streams import stable_hash, stream
+from envs.foundation.streams import stable_hash, stream
 
 KNOWN = {
     "": 0xB4B2_7974_57A0_A6E4,
@@ -48,7 +48,10 @@ def test_streams_do_not_advance_each_other() -> None:
 
 @pytest.mark.parametrize("salt", ["1", "2"])
 def test_streams_are_the_same_in_every_process(salt: str) -> None:
-    program = "from envs.streams import *; print(stable_hash('car_0'), stream(7, 'start', 'car_0').random())"
+    program = (
+        "from envs.foundation.streams import *; "
+        "print(stable_hash('car_0'), stream(7, 'start', 'car_0').random())"
+    )
     found = subprocess.check_output(
         [sys.executable, "-c", program], env={**os.environ, "PYTHONHASHSEED": salt}, text=True
     )

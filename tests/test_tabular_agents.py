@@ -10,17 +10,17 @@ from compiled_agents import KINDS, assert_allocates_nothing, assert_same_bits_fr
 from walks import A, B, Line, Square, episodes, learn_all, make, table
 
 from agents import HarmonicRate, LinearDecay, QLearning, Sarsa
-from agents.double_q_learning import DoubleQLearning
-from agents.expected_sarsa import ExpectedSarsa
-from agents.exploration import Softmax, UpperConfidence
-from agents.inheritance import inherits
-from agents.monte_carlo import MonteCarlo
-from agents.n_step_sarsa import NStepSarsa
-from agents.parameters import parameters_of
-from agents.references import XiaoAgent
-from agents.semi_gradient_sarsa import SemiGradientSarsa
-from agents.tabular import Tabular
-from agents.tutorial import TutorialQLearning
+from agents.algorithms.double_q_learning import DoubleQLearning
+from agents.algorithms.expected_sarsa import ExpectedSarsa
+from agents.algorithms.monte_carlo import MonteCarlo
+from agents.algorithms.n_step_sarsa import NStepSarsa
+from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
+from agents.algorithms.tabular import Tabular
+from agents.algorithms.tutorial import TutorialQLearning
+from agents.baselines import XiaoAgent
+from agents.learning.exploration import Softmax, UpperConfidence
+from agents.parameters.declared import parameters_of
+from agents.parameters.inheritance import inherits
 from envs import Hill
 
 RULES: list[dict[str, Any]] = [

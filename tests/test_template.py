@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 
 from agents import registry
 from arena import Entrant, Evaluation, Tournament, Training, load_plugin, run
-from arena.cli import main
-from arena.contract_checks import CHECKS
-from arena.step_time import seconds_per_step
-from arena.template import AGENT, TEST, write
-from arena.testing import findings
+from arena.cli.main import main
+from arena.plugins.template import AGENT, TEST, write
+from arena.testing.checks import CHECKS
+from arena.testing.suite import findings
+from arena.testing.timing import seconds_per_step
 
 METHODS = ["create", "act", "learn", "greedy"]
 

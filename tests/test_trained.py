@@ -7,12 +7,13 @@ import pytest
 from page_tournament import Broken
 
 from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
+from agents.algorithms.double_q_learning import DoubleQLearning
+from agents.algorithms.dyna_q import DynaQ
+from agents.algorithms.sarsa_lambda import SarsaLambda
 from agents.contract import Observation
-from agents.double_q_learning import DoubleQLearning
-from agents.dyna_q import DynaQ
-from agents.sarsa_lambda import SarsaLambda
 from arena import Entrant, Evaluation, Results, Tournament, Training, run
-from arena.trained import UnknownPolicyError, trained
+from arena.results.results import trained
+from arena.results.trained import UnknownPolicyError
 
 
 class Secretive:

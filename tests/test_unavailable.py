@@ -11,10 +11,10 @@ import pytest
 
 from agents import agent_class, registry
 from arena import load, load_plugin, run
-from arena.cli import main
-from arena.configuration import load_tournament
-from arena.digest import digest
-from arena.results import Results
+from arena.cli.main import main
+from arena.results.digests import digest
+from arena.results.results import Results
+from arena.tournament.configuration import load_tournament
 
 DRIVER = """
 import numpy as np

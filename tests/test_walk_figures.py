@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from arena import random_walk
-from arena.distributions import fit_all
-from arena.figures_walk import draw_hill, draw_lengths, save_figure
-from arena.walk_study import study
+from arena.figures.walks import draw_hill, draw_lengths, save_figure
+from arena.reproduction.walk_study import study
+from arena.walks.distributions import fit_all
 from envs import Hill
 
 HILL = Hill(omega=2.0, min_position=-1.5, goal_position=0.3, min_start=-0.9, max_start=-0.7)

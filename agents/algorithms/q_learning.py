@@ -1,0 +1,25 @@
+"""Q-learning: Eq. (16) of the paper; Watkins 1989; Sutton & Barto 2018, section 6.5."""
+
+from agents.algorithms.tabular import Tabular
+from agents.contract import Observation
+from agents.learning.action_values import best_action
+
+
+class QLearning(Tabular[None]):
+    """Off-policy TD control on a grid: learns the value of acting greedily next."""
+
+    __slots__ = ()
+
+    def learn(
+        self,
+        observation: Observation,
+        action: int,
+        reward: float,
+        next_observation: Observation,
+        next_action: int,
+        terminated: bool,
+    ) -> None:
+        """Towards the reward and the best value of the next cell."""
+        cell, next_cell = self.cells.encode(observation), self.cells.encode(next_observation)
+        next_value = self.values[next_cell, best_action(self.values, next_cell)]
+        self.update.apply(self.values, self.visits, cell, action, reward, next_value, terminated)

@@ -1,0 +1,108 @@
+"""A table of action values over the cells of a grid, and how the agent explores."""
+
+from typing import Generic, Literal, NamedTuple, Self, TypeVar, cast
+
+import numpy as np
+
+from agents.contract import Observation, Task
+from agents.discretization.cells import Binning, Bins, Cells, make_cells
+from agents.learning.action_values import Counts, Table, best_action
+from agents.learning.exploration import Exploration, Softmax, UpperConfidence, make_exploration
+from agents.learning.schedules import HarmonicRate, LinearDecay
+from agents.learning.updates import Update, make_update
+from agents.parameters.declared import Probability, StepSize, validated
+from envs.foundation.checks import number
+
+Memory = TypeVar("Memory")
+
+OF_THE_UPDATE = ("step_size", "count_visits", "goal")
+"""Parameters without a use for agents that compute their values from a model."""
+
+
+class Tabular(NamedTuple, Generic[Memory]):
+    """What Q-learning, SARSA and their kin share (paper, section 4): everything but ``learn``.
+
+    ``values`` and ``visits`` have shape (cells, actions); ``visits`` counts every time that an
+    action was taken in a cell. Among equal values the lowest action is the greedy one.
+
+    Attributes:
+        memory: what else the agent keeps; None for one that needs no more.
+    """
+
+    cells: Cells
+    values: Table
+    visits: Counts
+    update: Update
+    policy: Exploration
+    memory: Memory
+
+    @classmethod
+    @validated
+    def create(
+        cls,
+        task: Task,
+        *,
+        bins: Bins = (20, 30),
+        binning: Binning = "uniform",
+        discount: Probability = 0.99,
+        step_size: HarmonicRate | StepSize = HarmonicRate(),  # noqa: B008 (immutable)
+        epsilon: LinearDecay | Probability = LinearDecay(),  # noqa: B008 (immutable)
+        explore: Softmax | UpperConfidence | None = None,
+        initial_values: float | tuple[float, float] = 0.0,
+        count_visits: Literal["step", "episode", "state"] = "step",
+        goal: Literal["terminal", "bootstrap", "zero"] = "terminal",
+        rng: np.random.Generator | None = None,
+    ) -> Self:
+        """The agent before it has learned anything; the defaults are the paper's.
+
+        Args:
+            task: the hill.
+            bins: cells along position and velocity, or their edges; see ``agents.make_cells``.
+            binning: ``"uniform"``, ``"quantile"`` or ``"kmeans"``.
+            discount: gamma, in [0, 1].
+            step_size: alpha_n of Eq. (15), or a constant.
+            epsilon: share of random actions.
+            explore: what takes the place of epsilon-greedy exploration.
+            initial_values: of the whole table, or (low, high) to draw each uniformly.
+            count_visits: what n of Eq. (15) counts: each ``"step"`` that takes the action in the
+                cell, one of them an ``"episode"``, or each visit of the ``"state"``'s cell.
+            goal: ``"terminal"``: nothing follows it; ``"bootstrap"``: a cell like any other;
+                ``"zero"``: reaching it sets the value to 0.
+            rng: draws the initial values.
+
+        Raises:
+            TypeError, ValueError: when a parameter breaks its rule.
+        """
+        cells = make_cells(task, bins, binning, rng)
+        shape = (cells.size, task.n_actions)
+        rate = step_size if isinstance(step_size, HarmonicRate) else HarmonicRate(step_size, 1.0, 0.0)
+        return cls(
+            cells,
+            _initial(shape, initial_values, rng),
+            np.zeros(shape, np.int64),
+            make_update(shape, rate, discount, count_visits, goal),
+            make_exploration(epsilon, explore),
+            cast("Memory", None),  # an agent with more to keep puts it here
+        )
+
+    def begin_episode(self) -> None:
+        """Let the update count episodes."""
+        self.update.begin_episode()
+
+    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
+        """What the exploration chooses in the observation's cell."""
+        return self.policy.choose(self.values, self.visits, self.cells.encode(observation), progress, rng)
+
+    def greedy(self, observation: Observation) -> int:
+        """The best action of the observation's cell, Eq. (14)."""
+        return best_action(self.values, self.cells.encode(observation))
+
+
+def _initial(
+    shape: tuple[int, int], values: float | tuple[float, float], rng: np.random.Generator | None
+) -> Table:
+    if isinstance(values, float):
+        return np.full(shape, values)
+    low, high = values
+    number("initial_values", high, low)
+    return low + (high - low) * (rng or np.random.default_rng()).random(shape)

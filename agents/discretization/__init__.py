@@ -1,0 +1,1 @@
+"""Cells and binary features of observations."""

@@ -1,0 +1,143 @@
+"""Uniform grid over the observations: Eq. (18) of the paper."""
+
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.contract import Observation, Task
+from envs.foundation.checks import instance, integer, number
+
+
+class _Parts(NamedTuple):
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    bins: tuple[int, ...]
+    scale: tuple[float, ...]
+    edges: NDArray[np.float64]
+
+
+class Grid(_Parts):
+    """Cells ``[a + k h, a + (k + 1) h)`` with ``h = (b - a) / n`` in each of any number of dimensions.
+
+    ``encode`` is exact: the same as Eq. (18) in exact arithmetic for every float, so that a car at
+    rest is in the cell whose lower edge is 0, where there is one. Values outside belong to the
+    outermost cells, ``high`` to the last.
+
+    Args:
+        low: least value a of each dimension.
+        high: greatest value b of each dimension.
+        bins: number n of cells along each dimension, or one number for all.
+
+    Attributes:
+        edges: float64, shape (dimensions, max(bins) + 1): ``edges[d, k]`` is the least float in cell
+            k; NaN beyond the last cell's.
+
+    Raises:
+        TypeError, ValueError: when a bound or a number of bins breaks its rule, or the bins are too
+            fine for floats.
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, low: Iterable[float], high: Iterable[float], bins: int | Iterable[int]) -> Self:  # noqa: D102 (described by the class)
+        lows = tuple(number("low", x) for x in instance("low", low, Iterable))
+        highs = tuple(number("high", x) for x in instance("high", high, Iterable))
+        if len(lows) != len(highs) or not lows:
+            raise ValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
+        counts = _counts(bins, len(lows))
+        for a, b in zip(lows, highs, strict=True):
+            number("high", b, a, above=True)
+        edges = np.full((len(counts), max(counts) + 1), np.nan)
+        for d, (a, b, n) in enumerate(zip(lows, highs, counts, strict=True)):
+            edges[d, :n] = _edges(a, b, n)
+        edges.flags.writeable = False
+        scales = tuple(_scale(a, b, n, row) for a, b, n, row in zip(lows, highs, counts, edges, strict=True))
+        return super().__new__(cls, lows, highs, counts, scales, edges)
+
+    @classmethod
+    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]  # mypy adds new=, len=
+        low, high, bins, *_ = iterable  # the rest follows from these
+        return cls(low, high, bins)
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return self.low, self.high, self.bins
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Grid) and self.__getnewargs__() == other.__getnewargs__()
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def __hash__(self) -> int:
+        return hash(self.__getnewargs__())
+
+    @classmethod
+    def over(cls, task: Task, bins: int | Iterable[int]) -> Self:
+        """The grid over the observations of ``task``, a hill."""
+        return cls(task.low, task.high, bins)
+
+    @property
+    def size(self) -> int:
+        """Number of cells."""
+        return math.prod(self.bins)
+
+    @property
+    def active(self) -> int:
+        """Features that are active at once: one."""
+        return 1
+
+    def encode(self, observation: Observation) -> int:
+        """The cell's number in [0, size), last dimension fastest (C order)."""
+        cell = 0
+        for d in range(len(self.bins)):
+            last = self.bins[d] - 1
+            # ``scale`` is a hair less than 1 / h: k may be one too low, never too high.
+            offset = (observation[d] - self.low[d]) * self.scale[d]
+            offset = offset if offset > 0.0 else 0.0  # noqa: FURB136 (max would keep NaN)
+            k = int(offset) if offset < last else last
+            if observation[d] >= self.edges[d, k + 1]:
+                k += 1
+            cell = cell * self.bins[d] + k
+        return cell
+
+    def fill(self, observation: Observation, active: NDArray[np.int64]) -> None:
+        """Write the cell as the only active feature."""
+        active[0] = self.encode(observation)
+
+
+def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:
+    given = list(bins) if isinstance(bins, Iterable) else [bins] * dimensions
+    counts = tuple(integer("bins", n, 1) for n in given)
+    if len(counts) != dimensions:
+        raise ValueError(f"bins must have {dimensions} numbers, one a dimension, got {counts}")
+    return counts
+
+
+def _edges(low: float, high: float, bins: int) -> NDArray[np.float64]:
+    """The least float in each cell: the exact edge, rounded up."""
+    a, h = Fraction(low), (Fraction(high) - Fraction(low)) / bins
+    edges = np.empty(bins)
+    for k in range(bins):
+        edge = float(a + k * h)
+        edges[k] = edge if edge >= a + k * h else math.nextafter(edge, math.inf)
+    if not np.all(np.diff(edges) > 0.0):
+        raise ValueError(f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]")
+    return edges
+
+
+def _scale(low: float, high: float, bins: int, edges: NDArray[np.float64]) -> float:
+    """The largest tried factor with which ``encode`` is exact at every edge, hence everywhere.
+
+    ``encode`` grows with the value, so it is exact if it is on both sides of each edge.
+    """
+    k = np.arange(1, bins)
+    above, below = edges[1:bins], np.nextafter(edges[1:bins], -np.inf)
+    for bits in range(52, 20, -1):
+        scale = (1.0 - 2.0**-bits) * bins / (high - low)
+        if np.all((below - low) * scale < k) and np.all((above - low) * scale >= k - 1):
+            return float(scale)
+    raise ValueError(f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]")

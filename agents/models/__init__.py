@@ -1,0 +1,1 @@
+"""Models of the hill and what planning with them needs."""

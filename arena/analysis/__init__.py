@@ -1,0 +1,1 @@
+"""What results mean: scores, regret, standings, comparisons, curves, policy maps."""

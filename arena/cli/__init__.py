@@ -1,0 +1,5 @@
+"""The command ``arena``."""
+
+from arena.cli.main import entry, main
+
+__all__ = ["entry", "main"]

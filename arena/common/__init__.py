@@ -1,0 +1,1 @@
+"""What all of the arena builds on: plain values, arrays, HTML, locks, parallel calls."""

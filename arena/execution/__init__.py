@@ -1,0 +1,1 @@
+"""Runs of a tournament: drivers, workers, checkpoints, the runner."""

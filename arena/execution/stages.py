@@ -1,0 +1,47 @@
+"""Which runs of a tournament come before which look; all at once if its replicates are a number."""
+
+from arena.analysis.scores import scores_of
+from arena.results.results import Results
+from arena.results.store import Store
+from arena.statistics.sequential import ADAPTIVE, Look, decided, looks
+from arena.tournament.conditions import Run
+from arena.tournament.tournament import Tournament
+
+Stage = tuple[tuple[Run, ...], Look | None]
+
+
+def stages_of(tournament: Tournament) -> list[Stage]:
+    """The runs until each look, and the look; None where nothing is looked at."""
+    if tournament.replicates != ADAPTIVE:
+        return [(tournament.runs, None)]
+    entrants = len(tournament.entrants)
+    found = looks(entrants, tournament.max_replicates, tournament.confidence)
+    starts = [0, *(look.replicates for look in found)]
+    return [
+        (tournament.runs[entrants * start : entrants * look.replicates], look)
+        for start, look in zip(starts, found)
+    ]
+
+
+def pending_runs(
+    tournament: Tournament, stages: list[Stage], store: Store | None, done: set[tuple[str, int]]
+) -> list[Run]:
+    """What may have to be run: nothing if what is finished decides.
+
+    Args:
+        tournament: what is raced.
+        stages: its runs.
+        store: of an earlier start, if there was one.
+        done: entrant and replicate of the runs that are finished in it.
+    """
+    pending: list[Run] = []
+    for stage, look in stages:
+        pending += [one for one in stage if (one.entrant.name, one.replicate) not in done]
+        if store and look and not pending and is_decided(tournament, store, look):
+            break
+    return pending
+
+
+def is_decided(tournament: Tournament, store: Store, look: Look) -> bool:
+    """Whether the places that the tournament is to decide are decided at ``look``."""
+    return decided(scores_of(Results(store)).costs("steps"), look, tournament.leaders)

@@ -1,0 +1,1 @@
+"""Results on a page, in a terminal, in a notebook."""

@@ -1,0 +1,152 @@
+"""The page: one HTML file that says all of a tournament, without any network."""
+
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from arena.analysis.curves import WINDOW
+from arena.analysis.scores import SCORES, decimals, scores_of
+from arena.analysis.standings import Leaderboard, check_confidence, leaderboard
+from arena.report.page_data import MOST_DRAWN, page_data
+from arena.reproduction.claims import results_claims
+from arena.reproduction.published import MINIMUM_ACCURACY
+from arena.reproduction.tables import compare
+from arena.reproduction.verdicts import Claim
+from arena.results.digests import digest
+from arena.results.results import Results
+from arena.tournament.builtin import BUILT_IN
+
+
+def write_report(results: Results, path: Path, by: str = "steps", confidence: float = 0.95) -> None:
+    """Write the page.
+
+    Args:
+        results: of a tournament; it need not be finished.
+        path: of the file.
+        by: the score of the places.
+        confidence: of intervals and places.
+
+    Raises:
+        ValueError: when there is no such score, or the confidence is not between 0 and 1.
+        OSError: when the file cannot be written.
+    """
+    path.write_text(report(results, by, confidence), encoding="utf-8")
+
+
+def report(results: Results, by: str = "steps", confidence: float = 0.95) -> str:
+    """The page as a text; see ``write_report``."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("arena.report", "assets"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=False,
+    )
+    environment.filters["told"] = _told
+    environment.filters["pretty"] = lambda value: json.dumps(value, indent=1)
+    check_confidence(confidence)
+    scores = scores_of(results, by)
+    board = leaderboard(results, by, confidence, scores)
+    data = page_data(results, scores, board)
+    paper, config = compare(results), results.config
+    return environment.get_template("page.html").render(
+        config=config,
+        sections=_sections(paper=paper is not None),
+        board=board,
+        words=SCORES[by].words,
+        percent=f"{100.0 * confidence:g}",
+        columns=_columns(board),
+        rows=list(_rows(results, board)),
+        window=WINDOW,
+        replicate=0,
+        most_drawn=MOST_DRAWN,
+        ghost=data["ghost"] is not None,
+        paper=paper,
+        least=f"{MINIMUM_ACCURACY:g}",
+        claims=_claims(results),
+        failures=list(_failures(results)),
+        untold=data.pop("untold"),
+        digest=digest(results),
+        command=_command(config),
+        versions=results.versions,
+        data=data,
+    )
+
+
+def _sections(*, paper: bool) -> list[tuple[str, str]]:
+    told = [("paper", "Beside the paper")] if paper else []
+    return [
+        ("leaderboard", "Leaderboard"),
+        ("learning", "Learning"),
+        ("maps", "Policies and visits"),
+        ("pairs", "Pairs"),
+        ("race", "Race"),
+        *told,
+        ("failures", "Failures"),
+        ("reproduce", "How to reproduce"),
+    ]
+
+
+def _columns(board: Leaderboard) -> list[tuple[str, bool]]:
+    """Labels, and whether the column is one of numbers."""
+    told = [(name.replace("_", " "), True) for name in board.shown]
+    return [("place", False), ("entrant", False), ("agent", False), *told, ("failed runs", True)]
+
+
+def _rows(results: Results, board: Leaderboard) -> Iterator[dict[str, Any]]:
+    agents = {one["name"]: one["agent"] for one in results.config["entrants"]}
+    for order, one in enumerate(board.standings):
+        numbers = []
+        for name in board.shown:
+            value, low, high = one.scores[name]
+            form = f"{{:,.{decimals(name)}f}}"
+            ends = "" if math.isnan(low) else f" [{form.format(low)}, {form.format(high)}]"
+            told = "-" if math.isnan(value) else form.format(value) + (ends if name == board.by else "")
+            numbers.append((value, told))
+        yield {
+            "order": order,
+            "place": one.places,
+            "entrant": one.entrant,
+            "agent": agents[one.entrant],
+            "numbers": [*numbers, (one.failed, str(one.failed))],
+        }
+
+
+def _claims(results: Results) -> list[Claim]:
+    """Verdicts on what the results can decide; none if they are not those of the whole paper."""
+    try:
+        return results_claims(results)
+    except ValueError:
+        return []
+
+
+def _failures(results: Results) -> Iterator[dict[str, Any]]:
+    for run in results.runs:
+        if run["status"] != "finished":
+            lines = run.get("error", "").strip().splitlines()
+            yield {**run, "reason": lines[-1] if lines else "no reason"}
+
+
+def _command(config: dict[str, Any]) -> str:
+    """What runs the tournament again."""
+    name, given = config["name"], {key: config[key] for key in ("replicates", "seed", "reading")}
+    try:
+        if BUILT_IN[name](**given).to_dict() == config:
+            return " ".join([f"arena run {name}", *(f"--{key} {value}" for key, value in given.items())])
+    except (KeyError, TypeError, ValueError):
+        pass
+    return (
+        "import json, arena\n"
+        "from arena.tournament import from_dict\n\n"
+        "# configuration.json holds the configuration below\n"
+        'arena.run(from_dict(json.load(open("configuration.json"))), "again.sqlite")'
+    )
+
+
+def _told(value: float) -> str:
+    if math.isnan(value):
+        return ""
+    return f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:,.4g}"

@@ -1,0 +1,71 @@
+"""What a terminal can show beside the tables: sparklines of learning, and the policy of the best."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rich.console import Console, Group, RenderableType
+from rich.text import Text
+
+from arena.analysis.curves import reward_curves
+from arena.analysis.policy_map import map_of, policy
+from arena.figures.style import ACTION_NAMES, ACTIONS
+from arena.results.results import Results, best_entrants, trained
+from arena.results.trained import Trained
+
+LEVELS = "▁▂▃▄▅▆▇█"
+_BEST = 10  # entrants with a sparkline
+_WIDTH, _HEIGHT = 54, 12  # characters; a character of the map has two cells, one above the other
+
+
+def can_show(console: Console) -> bool:
+    """Whether it is a terminal that has the characters."""
+    return console.is_terminal and console.encoding.lower().startswith("utf")
+
+
+def sparkline(values: ArrayLike, low: float, high: float, width: int = _WIDTH) -> str:
+    """The values as a line of blocks, between ``low`` and ``high``, each the mean of some."""
+    found = np.asarray(values, float)
+    means = [part.mean() for part in np.array_split(found, min(width, len(found)))]
+    shares = (np.array(means) - low) / ((high - low) or 1.0)
+    return "".join(LEVELS[int(level)] for level in np.clip(shares * len(LEVELS), 0, len(LEVELS) - 1))
+
+
+def pictures(results: Results) -> RenderableType:
+    """Learning curves of the best, on one logarithmic scale, and the policy of the first; or nothing."""
+    try:
+        names = best_entrants(results, _BEST)
+        curves = {name: reward_curves(results, name).mean(axis=0) for name in names}
+    except ValueError:  # no run has finished, or there are too few episodes for a curve
+        return Group()
+    low, high = (float(end(end(curve) for curve in curves.values())) for end in (min, max))
+    ends = -np.log(-low), -np.log(-high)
+    width = max(map(len, names))
+    lines = [Text(f"{name:{width}}  {sparkline(-np.log(-curve), *ends)}") for name, curve in curves.items()]
+    heading = f"Learning: accumulated reward by episode, from {low:,.0f} to {high:,.0f} (logarithmic)."
+    return Group(Text(heading), *lines, *_policy(results, names[0]))
+
+
+def _policy(results: Results, name: str) -> list[Text]:
+    try:
+        return blocks(trained(results, name))
+    except ValueError:  # one that cannot be told
+        return []
+
+
+def blocks(agent: Trained) -> list[Text]:
+    """The policy map in coloured blocks: position to the right, velocity upward.
+
+    Raises:
+        arena.results.trained.UnknownPolicyError: when it drives by chance.
+    """
+    actions = policy(agent, map_of(agent))
+    across, upward = (np.arange(n) * size // n for n, size in zip((_WIDTH, 2 * _HEIGHT), actions.shape))
+    shown = actions[np.ix_(across, upward[::-1])].T
+    lines = [Text(f"Policy of {agent.entrant}, position to the right, velocity upward: ")]
+    for name, color in zip(ACTION_NAMES, ACTIONS):
+        lines[0].append("█", color).append(f" {name} ")
+    for above, below in zip(shown[::2], shown[1::2]):
+        line = Text()
+        for a, b in zip(above, below):
+            line.append("▀", f"{ACTIONS[a]} on {ACTIONS[b]}")
+        lines.append(line)
+    return lines

@@ -1,0 +1,1 @@
+"""The paper: what it prints, and what we measure beside it."""

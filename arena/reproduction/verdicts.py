@@ -1,0 +1,93 @@
+"""A claim of the paper beside the distribution of what we measured, and the verdict."""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from arena.common.plain import without_nan
+
+REPRODUCED, NOT_REPRODUCED, NOT_TESTABLE = "reproduced", "not reproduced", "not testable"
+Floats = NDArray[np.float64]
+CENTRAL = 95.0  # percent of our replicates that a number must be among to be reproduced
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One quantitative claim.
+
+    Attributes:
+        section: of the paper.
+        statement: what is claimed.
+        paper: the paper's number; NaN if it gives none.
+        ours: mean over our replicates; NaN if we have none.
+        low, high: the central 95% of our replicates; NaN if there is no distribution.
+        percentile: of the paper's number among our replicates; NaN where that says nothing.
+        verdict: ``"reproduced"``, ``"not reproduced"`` or ``"not testable"``.
+        note: why, where the numbers do not say it.
+    """
+
+    section: str
+    statement: str
+    paper: float
+    ours: float
+    low: float
+    high: float
+    percentile: float
+    verdict: str
+    note: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values, NaN as None."""
+        found: dict[str, Any] = without_nan(asdict(self))
+        return found
+
+
+def number_claim(section: str, statement: str, paper: float, sample: ArrayLike, note: str = "") -> Claim:
+    """A number: reproduced if it is among the central 95% of ours, as one more replicate would be."""
+    found = _known(sample)
+    if not len(found):
+        return untestable_claim(section, statement, paper, found, "none of our replicates has such a number")
+    low, high = _central(found)
+    percentile = 100.0 * (np.mean(found < paper) + np.mean(found == paper) / 2.0)
+    verdict = REPRODUCED if low <= paper <= high else NOT_REPRODUCED
+    return Claim(section, statement, paper, float(found.mean()), low, high, float(percentile), verdict, note)
+
+
+def holds_claim(section: str, statement: str, sample: ArrayLike, note: str = "") -> Claim:
+    """That something is so: reproduced if it is in 95% of the replicates. Ours is that share, in percent."""
+    share = 100.0 * float(np.mean(np.asarray(sample, dtype=bool)))
+    verdict = REPRODUCED if share >= CENTRAL else NOT_REPRODUCED
+    note = "; ".join(part for part in ("ours: percent of the replicates in which it is so", note) if part)
+    return Claim(section, statement, math.nan, share, math.nan, math.nan, math.nan, verdict, note)
+
+
+def measured_claim(
+    section: str, statement: str, paper: float, sample: ArrayLike, *, reproduced: bool, note: str
+) -> Claim:
+    """One that is decided by a test, which the note names."""
+    verdict = REPRODUCED if reproduced else NOT_REPRODUCED
+    return Claim(section, statement, paper, *_estimates(sample), math.nan, verdict, note)
+
+
+def untestable_claim(section: str, statement: str, paper: float, sample: ArrayLike, why: str) -> Claim:
+    """One that nothing we have can decide; ``sample`` is what we measured all the same, it may be empty."""
+    return Claim(section, statement, paper, *_estimates(sample), math.nan, NOT_TESTABLE, why)
+
+
+def _estimates(sample: ArrayLike) -> tuple[float, float, float]:
+    found = _known(sample)
+    return (float(found.mean()), *_central(found)) if len(found) else (math.nan, math.nan, math.nan)
+
+
+def _known(sample: ArrayLike) -> Floats:
+    found: Floats = np.asarray(sample, dtype=float)
+    return found[~np.isnan(found)]
+
+
+def _central(found: Floats) -> tuple[float, float]:
+    tail = (100.0 - CENTRAL) / 2.0
+    low, high = np.percentile(found, (tail, 100.0 - tail))
+    return float(low), float(high)

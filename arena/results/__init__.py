@@ -1,0 +1,7 @@
+"""Results of a tournament: the file, what is read from it, and the agents that it trained."""
+
+from arena.results.results import Results, load
+from arena.results.store import ResultsError
+from arena.results.trained import Trained
+
+__all__ = ["Results", "ResultsError", "Trained", "load"]

@@ -1,0 +1,36 @@
+"""What results come from: versions of the packages, and the code of the agents."""
+
+import hashlib
+import inspect
+import platform
+from collections.abc import Iterable
+from importlib import metadata
+from typing import Any
+
+from agents import agent_name
+from arena.plugins.loading import source_of
+
+
+def versions() -> dict[str, str]:
+    """Versions of what computes the results."""
+    packages = ["mountain-car-arena", "numpy", "numba", "pettingzoo", "gymnasium", "joblib"]
+    found = {"python": platform.python_version(), "platform": platform.platform()}
+    for package in packages:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            found[package] = "not installed"
+    return found
+
+
+def source_digests(agents: Iterable[type[Any]]) -> dict[str, str]:
+    """A hash of each agent's code, of a plugin's whole file, by its name; empty where it is not found."""
+    found = {}
+    for agent in agents:
+        plugins = source_of(agent)
+        try:
+            code = "".join(plugin.text for plugin in plugins) or inspect.getsource(agent)
+        except (OSError, TypeError):  # typed in at a prompt
+            code = ""
+        found[agent_name(agent)] = hashlib.sha256(code.encode()).hexdigest() if code else ""
+    return found

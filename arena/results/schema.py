@@ -1,0 +1,56 @@
+"""What a results file must hold, checked when it is opened."""
+
+from typing import Any
+
+from arena.statistics.sequential import ADAPTIVE, MOST
+
+_NUMBER = (int, float, type(None))
+_MOST = 1e15  # more than any score or count
+_COLUMNS: dict[str, Any] = {
+    "entrant": str,
+    "replicate": int,
+    "driver": str,
+    "status": str,
+    "accuracy": _NUMBER,
+    "mean_length": _NUMBER,
+    "iterations": int,
+    "seconds": _NUMBER,
+    "error": str,
+}
+
+
+def _sound(config: Any) -> bool:
+    """Whether a tournament that was read has what the rest of the program looks for."""
+    kinds: dict[str, Any] = {"name": str, "reading": str, "seed": int, "replicates": (int, str)}
+    kinds["entrants"] = list
+    if not isinstance(config, dict) or not all(isinstance(config.get(k), v) for k, v in kinds.items()):
+        return False
+    if not _sound_numbers(config):
+        return False
+    parts = {"name": str, "agent": str, "parameters": dict}
+    if not all(
+        isinstance(entrant, dict) and all(isinstance(entrant.get(k), v) for k, v in parts.items())
+        for entrant in config["entrants"]
+    ):
+        return False
+    # A name with control characters would command the terminal that it is printed on.
+    names = [
+        config["name"],
+        config["reading"],
+        *(e[k] for e in config["entrants"] for k in ("name", "agent")),
+    ]
+    return all(name.isprintable() for name in names)
+
+
+def _sound_numbers(config: dict[str, Any]) -> bool:
+    """Whether the lengths of a tournament are such as scores can be made of."""
+    for part in (config.get("training"), config.get("evaluation")):
+        lengths = [part.get(name) for name in ("episodes", "max_steps")] if isinstance(part, dict) else [None]
+        if not all(isinstance(length, int) and 1 <= length <= _MOST for length in lengths):
+            return False
+    if isinstance(config["replicates"], int):
+        return True
+    most, leaders, confidence = (config.get(k) for k in ("max_replicates", "leaders", "confidence"))
+    counts = isinstance(most, int) and 1 <= most <= MOST and isinstance(leaders, int) and leaders >= 1
+    level = isinstance(confidence, float) and 0.0 < confidence < 1.0
+    return config["replicates"] == ADAPTIVE and counts and level

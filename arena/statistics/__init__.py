@@ -1,0 +1,1 @@
+"""Statistics over replicates; knows no tournament."""

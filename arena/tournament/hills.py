@@ -1,0 +1,31 @@
+"""Hills by name, and from TOML files."""
+
+from arena.tournament.configuration import build, read_toml
+from envs import Hill
+
+HILLS = {"paper": Hill(), "constrained": Hill(dynamics="constrained")}
+"""The paper's, Eq. (7), and the same with the full equation of motion (docs/physics.md)."""
+
+
+def find_hill(name: str) -> Hill:
+    """The hill that ``name`` means.
+
+    Args:
+        name: of one of ``HILLS``; or a TOML file, such as that of a tournament, whose table ``hill`` has
+            arguments of ``Hill``.
+
+    Raises:
+        TypeError, ValueError: when there is none, or when it breaks a rule; the message names the file.
+    """
+    if name in HILLS:
+        return HILLS[name]
+    if not name.endswith(".toml"):
+        raise ValueError(
+            f"hill must be one of {', '.join(HILLS)}, or a file that ends in .toml, got {name!r}"
+        )
+    content = read_toml(name)
+    try:
+        found: Hill = build("hill", Hill, content.get("hill"))
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name}: {error}") from error
+    return found

@@ -1,0 +1,96 @@
+"""What a run leaves behind."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arena.common.npz import Arrays, pack
+from arena.tournament.conditions import Run
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Scores and arrays of one run, in values that any process can receive.
+
+    Attributes:
+        entrant, replicate: which run.
+        driver: ``compiled`` or ``pettingzoo``.
+        status: ``finished`` or ``failed``.
+        accuracy: percentage of the test episodes that reached the goal.
+        mean_length: mean steps of those that did; NaN if none did.
+        iterations: steps of learning.
+        seconds: that the run took.
+        arrays: of the agent and of its episodes, as the bytes of an ``.npz`` file.
+        error: what went wrong, with its traceback; empty if nothing did.
+    """
+
+    entrant: str
+    replicate: int
+    driver: str
+    status: str
+    accuracy: float = math.nan
+    mean_length: float = math.nan
+    iterations: int = 0
+    seconds: float = 0.0
+    arrays: bytes = b""
+    error: str = ""
+
+
+def score(lengths: NDArray[np.int64], reached: NDArray[np.bool_]) -> tuple[float, float]:
+    """The paper's accuracy in percent and mean length of the successful episodes (section 4.3)."""
+    successful = lengths[reached]
+    accuracy = 100.0 * len(successful) / len(lengths)
+    return accuracy, float(successful.mean()) if len(successful) else math.nan
+
+
+def complete(
+    run: Run,
+    driver: str,
+    agent: Any,
+    lengths: NDArray[np.int64],
+    test_lengths: NDArray[np.int64],
+    test_reached: NDArray[np.bool_],
+    seconds: float,
+) -> Outcome:
+    """The outcome of a run that came to its end.
+
+    Raises:
+        ValueError: when an array of the agent has NaN: its scores would mean nothing.
+    """
+    accuracy, mean_length = score(test_lengths, test_reached)
+    arrays = agent_arrays(agent)
+    for name, array in arrays.items():
+        if np.issubdtype(array.dtype, np.inexact) and np.isnan(array).any():
+            raise ValueError(
+                f"{name} must be free of NaN after training, got {np.isnan(array).sum()} of them"
+            )
+    arrays |= {"lengths": lengths, "test_lengths": test_lengths, "test_reached": test_reached}
+    return Outcome(
+        run.entrant.name,
+        run.replicate,
+        driver,
+        "finished",
+        accuracy,
+        mean_length,
+        int(lengths.sum()),
+        seconds,
+        pack(arrays),
+    )
+
+
+def failed(run: Run, driver: str, error: str, seconds: float = 0.0) -> Outcome:
+    """The outcome of a run that did not finish, and why."""
+    return Outcome(run.entrant.name, run.replicate, driver, "failed", seconds=seconds, error=error)
+
+
+def agent_arrays(agent: Any) -> Arrays:
+    """The arrays that are fields or attributes of the agent, by name."""
+    fields = agent._asdict() if hasattr(agent, "_asdict") else getattr(agent, "__dict__", {})
+    return {
+        name: value
+        for name, value in fields.items()
+        if isinstance(value, np.ndarray) and not value.dtype.hasobject
+    }

@@ -1,0 +1,1 @@
+"""Random walks on the hill (paper, section 3.2)."""

@@ -21,7 +21,7 @@ import numpy as np
 from agents import Grid, QLearning, Sarsa
 from arena.execution.loops import listener, train
 from envs import Hill
-from envs.compilation.kernels import compile_loop
+from envs.compilation import compile_loop
 
 
 @numba.njit(nogil=True, error_model="numpy")

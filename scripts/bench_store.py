@@ -11,8 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from arena import run
-from arena.tournament.builtin import paper
+from arena import paper, run
 
 
 def seconds(replicates: int, out: Path | None) -> float:

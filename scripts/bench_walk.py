@@ -24,7 +24,8 @@ import numpy as np
 from c_loops import built
 
 from arena import random_walk
-from arena.reproduction.published import PAPER, PAPER_SECONDS
+from arena.reproduction import PAPER
+from arena.reproduction.published import PAPER_SECONDS
 from envs.foundation.streams import stream
 
 MAX_STEPS = 1_000_000

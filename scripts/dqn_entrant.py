@@ -22,7 +22,7 @@ from stable_baselines3.common.logger import Logger  # type: ignore[import-not-fo
 from stable_baselines3.common.utils import polyak_update  # type: ignore[import-not-found, unused-ignore]  # optional
 
 from agents import QLearning
-from agents.parameters.declared import Count, NonNegative, Positive, Probability
+from agents.parameters import Count, NonNegative, Positive, Probability
 from arena import Entrant, Evaluation, Tournament, Training, run
 
 

@@ -9,7 +9,7 @@ how far one replicate is from the mean of the others: no reading can be expected
 import argparse
 
 from arena import paper, run
-from arena.reproduction.tables import compare, iterations_spread, paper_tables
+from arena.reproduction import compare, iterations_spread, paper_tables
 from arena.tournament.readings import READINGS
 
 

@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.algorithms.value_iteration import GridPlanner
-from agents.optimal.driver import Optimal
-from agents.optimal.fewest_steps import NEVER, optimal_steps
+from agents.optimal import NEVER, Optimal, optimal_steps
 from arena.execution.loops import evaluate
 from envs import Hill
-from envs.compilation.kernels import compile_loop
+from envs.compilation import compile_loop
 
 Steps = NDArray[np.int64]
 PATIENCE = 500

@@ -21,7 +21,7 @@ import optuna
 
 from agents import HarmonicRate, LinearDecay, QLearning, Sarsa
 from arena import Results, Tournament, run, sweep
-from arena.reproduction.tables import compare, iterations_spread, paper_tables
+from arena.reproduction import compare, iterations_spread, paper_tables
 from arena.tournament.builtin import PAPER_BINS
 from envs import Hill
 

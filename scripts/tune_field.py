@@ -16,8 +16,7 @@ from typing import Any
 
 import optuna
 
-from agents import HarmonicRate, LinearDecay, agent_class
-from agents.learning.exploration import Softmax, UpperConfidence
+from agents import HarmonicRate, LinearDecay, Softmax, UpperConfidence, agent_class
 from arena import Entrant, Evaluation, Tournament, Training, run
 from arena.common.plain import plain
 

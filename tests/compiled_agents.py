@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from test_drivers import told
 
-from agents.learning.exploration import Softmax, UpperConfidence
+from agents import Softmax, UpperConfidence
 from arena import Entrant, Evaluation, Tournament, Training, run
 from arena.execution.loops import listener, train
 from envs import Hill
-from envs.compilation.kernels import cache_directory, compile_loop
+from envs.compilation import cache_directory, compile_loop
 from envs.compilation.reachable import Reached
 
 NEAR = Hill(goal_position=-0.44, min_start=-0.65, max_start=-0.45)

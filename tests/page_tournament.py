@@ -5,8 +5,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from agents import MomentumAgent, RandomAgent, Sarsa
-from agents.contract import Observation, Task
+from agents import MomentumAgent, RandomAgent, Sarsa, Task
+from agents.contract import Observation
 from arena import Entrant, Evaluation, Tournament, Training, run
 
 HOSTILE = "<script>alert(1)</script>"

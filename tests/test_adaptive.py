@@ -15,12 +15,12 @@ from test_drivers import told
 
 from agents import MomentumAgent, QLearning, RandomAgent
 from arena import Entrant, Evaluation, Tournament, Training, load, run
-from arena.analysis.standings import leaderboard
-from arena.cli.main import main
-from arena.results.digests import digest
+from arena.analysis import leaderboard
+from arena.cli import main
+from arena.results import digest
 from arena.statistics.permutation import smallest_p
 from arena.statistics.sequential import Look, decided, looks
-from arena.tournament.configuration import from_dict
+from arena.tournament import from_dict
 
 
 def race(*entrants: Entrant, **arguments: Any) -> Tournament:
@@ -226,7 +226,7 @@ def test_a_damaged_configuration_is_told(data: st.DataObject) -> None:
 
 
 def test_the_gate_takes_adaptive_files_of_unlike_length() -> None:
-    from arena.analysis.pairwise import regressions
+    from arena.analysis import regressions
 
     values = [100.0 + n for n in range(10)]
     with made_up({"a": values}, replicates=10) as old, made_up({"a": [*values, 1.0]}, replicates=11) as new:

@@ -27,8 +27,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agents import HarmonicRate, LinearDecay, QLearning, Softmax, UpperConfidence
+from agents.parameters import parameters_of
 from agents.parameters.annotations import rule, settle
-from agents.parameters.declared import parameters_of
 from arena import Entrant
 from envs.foundation.checks import Validated, number
 

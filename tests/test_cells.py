@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from agents import Grid, QLearning
-from agents.discretization.cells import Cells, _visited, make_cells
-from agents.discretization.edge_grid import EdgeGrid
-from agents.discretization.voronoi import Voronoi
+from agents.discretization import EdgeGrid, Voronoi, make_cells
+from agents.discretization.cells import Cells, _visited
 from envs import Hill
 
 HILL = Hill()

@@ -15,8 +15,8 @@ from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
 from arena import Entrant, load, run
 from arena.execution import compiled_driver, pettingzoo_driver
 from arena.execution.checkpoint import Checkpoint, file_of, savable
-from arena.results.digests import digest
-from arena.tournament.conditions import Conditions, Run
+from arena.results import digest
+from arena.tournament import Conditions, Run
 from arena.tournament.outcome import Outcome
 from envs import Hill
 

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from arena import load
-from arena.cli.main import main
+from arena.cli import main
 
 RACE = """
 name = "race"

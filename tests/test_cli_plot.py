@@ -9,7 +9,7 @@ from PIL import Image
 
 from agents import MomentumAgent, RandomAgent, Sarsa
 from arena import Entrant, Evaluation, Tournament, Training, run
-from arena.cli.main import main
+from arena.cli import main
 from arena.cli.plot import Kind
 
 

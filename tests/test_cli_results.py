@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from made_up_results import made_up
 
-from arena.analysis.scores import SCORES
-from arena.cli.main import main
+from arena.analysis import SCORES
+from arena.cli import main
 from arena.cli.options import By
 
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0, 9.0, 8.0]

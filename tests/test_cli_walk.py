@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from arena import random_walk
-from arena.cli.main import main
+from arena.cli import main
 from envs import Hill, Integrator
 
 NEAR = """

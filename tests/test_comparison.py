@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from arena import Evaluation, Results, Training, paper, quick, run
-from arena.reproduction.published import published
-from arena.reproduction.tables import compare
+from arena.reproduction import compare, published
 from arena.results.store import Store
 from arena.statistics.intervals import correlation, mean_interval
 from arena.tournament.outcome import Outcome

@@ -11,7 +11,7 @@ import pytest
 
 from agents import QLearning, Sarsa
 from envs import Hill
-from envs.compilation.kernels import CompilationError, compile_loop
+from envs.compilation import CompilationError, compile_loop
 from envs.compilation.reachable import Reached
 
 PLUGIN = """

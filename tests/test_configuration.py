@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from agents import HarmonicRate, MomentumAgent, Sarsa
 from arena import Entrant, Evaluation, Tournament, Training, sweep
-from arena.tournament.configuration import from_dict, load_tournament
+from arena.tournament import from_dict, load_tournament
 from envs import Hill
 
 WHOLE = """

@@ -18,9 +18,9 @@ from agents import registry
 from agents.baselines import DoesNotLearn
 from agents.registry import all_agents
 from arena import Entrant
-from arena.cli.main import main
+from arena.cli import main
+from arena.testing import check_agent, findings, parametrize_with_checks
 from arena.testing.checks import CHECKS, Check
-from arena.testing.suite import check_agent, findings, parametrize_with_checks
 
 Table = NDArray[np.float64]
 NAMES = [check.__name__.removeprefix("check_").replace("_", " ") for check in CHECKS]

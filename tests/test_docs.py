@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from test_plugins import BROKEN
 
-from arena.tournament.configuration import from_dict
+from arena.tournament import from_dict
 from arena.tournament.readings import READINGS
 
 ROOT = Path(__file__).parent.parent

@@ -11,7 +11,7 @@ from test_drivers import told
 
 from agents import QLearning, registry
 from arena import Entrant, Evaluation, Tournament, Training, load_plugin, run
-from arena.testing.suite import findings
+from arena.testing import findings
 from envs import Hill
 
 pytest.importorskip("stable_baselines3", reason="Stable-Baselines3, and PyTorch with it, is not installed")

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from arena import load
-from arena.cli.main import main
+from arena.cli import main
 
 ROOT = Path(__file__).parent.parent
 RACE = runpy.run_path(str(ROOT / "scripts" / "kill_and_continue.py"))["RACE"]

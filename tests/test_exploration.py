@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from agents import LinearDecay
-from agents.learning.exploration import EpsilonGreedy, Softmax, UpperConfidence, make_exploration
+from agents import LinearDecay, Softmax, UpperConfidence
+from agents.learning.exploration import EpsilonGreedy, make_exploration
 
 VALUES = np.array([[9.0, -9.0, 0.0], [1.0, 2.0, 0.5]])
 VISITS = np.array([[1, 1, 1], [4, 40, 3]])

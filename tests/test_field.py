@@ -11,7 +11,7 @@ import pytest
 from agents.registry import BUILT_IN
 from arena import Evaluation, Tournament, Training, field, run
 from arena.statistics.intervals import mean_interval
-from arena.tournament.configuration import load_tournament
+from arena.tournament import load_tournament
 
 FIXED = ["tutorial", "xiao", "momentum", "random", "value-iteration", "optimal"]
 

@@ -16,17 +16,23 @@ from matplotlib.figure import Figure
 from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
 from agents.algorithms.sarsa_lambda import SarsaLambda
 from arena import Entrant, Evaluation, Results, Tournament, Training, run, sweep
-from arena.analysis.curves import moving_average
+from arena.analysis import leaderboard, moving_average, scores_of
 from arena.analysis.policy_map import FINE
-from arena.analysis.scores import scores_of
-from arena.analysis.standings import leaderboard
-from arena.figures.learning import draw_learning
-from arena.figures.policy import draw_phase, draw_policy, draw_value, draw_visits
-from arena.figures.scores import draw_intervals, draw_pairs, draw_ranks, draw_regret
+from arena.figures import (
+    draw_intervals,
+    draw_learning,
+    draw_pairs,
+    draw_phase,
+    draw_policy,
+    draw_ranks,
+    draw_regret,
+    draw_sweep,
+    draw_value,
+    draw_visits,
+)
 from arena.figures.style import LINES
-from arena.figures.sweep import draw_sweep
+from arena.results import UnknownPolicyError
 from arena.results.results import trained
-from arena.results.trained import UnknownPolicyError
 from arena.statistics.intervals import probability_of_improvement
 
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from agents import Grid
 from envs import Hill
-from envs.compilation.kernels import compile_loop
+from envs.compilation import compile_loop
 
 Floats = NDArray[np.float64]
 BOUNDS = st.floats(-1e6, 1e6) | st.integers(-40, 40).map(lambda tenths: tenths / 10)

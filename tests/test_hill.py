@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from envs import Dynamics, Hill, Integrator
-from envs.compilation.kernels import compile_loop
+from envs.compilation import compile_loop
 
 Floats = NDArray[np.float64]
 

@@ -12,13 +12,9 @@ from made_up_results import LIMIT, made_up
 from rich.console import Console
 
 from agents import MomentumAgent, RandomAgent
-from agents.optimal.driver import Optimal
-from agents.optimal.fewest_steps import optimal_steps
+from agents.optimal import Optimal, optimal_steps
 from arena import Entrant, Evaluation, Results, Tournament, Training, run
-from arena.analysis.curves import learning_curves
-from arena.analysis.pairwise import compare_entrants, regressions
-from arena.analysis.scores import SCORES, scores_of
-from arena.analysis.standings import leaderboard
+from arena.analysis import SCORES, compare_entrants, leaderboard, learning_curves, regressions, scores_of
 from arena.report.tables import render
 from arena.statistics.intervals import mean_estimate
 from envs import Hill

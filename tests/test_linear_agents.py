@@ -15,12 +15,12 @@ from agents.algorithms.sarsa_lambda import SarsaLambda
 from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
 from agents.algorithms.true_online_sarsa import TrueOnlineSarsa
 from agents.algorithms.watkins_q_lambda import WatkinsQLambda
-from agents.discretization.tile_coding import TileCoding
+from agents.discretization import TileCoding
 from agents.learning.traces import NEGLIGIBLE
 from arena import Entrant, Evaluation, Tournament, Training, run
 from arena.execution.loops import listener, train
 from envs import Hill
-from envs.compilation.kernels import cache_directory, compile_loop
+from envs.compilation import cache_directory, compile_loop
 from envs.compilation.reachable import Reached
 
 Floats = NDArray[np.float64]

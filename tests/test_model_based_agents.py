@@ -13,17 +13,16 @@ from test_drivers import told
 from walks import A, B, Square, episodes, learn_all, make, table
 
 import agents.algorithms.fitted_q_iteration
-from agents import HarmonicRate, QLearning
+from agents import HarmonicRate, QLearning, Softmax
 from agents.algorithms.dyna_q import DynaQ
 from agents.algorithms.fitted_q_iteration import Fit, FittedQIteration, fitted
 from agents.algorithms.prioritized_sweeping import PrioritizedSweeping
 from agents.algorithms.r_max import RMax
-from agents.learning.exploration import Softmax
 from agents.models.batch import Batch
 from agents.models.cell_model import SUCCESSORS, CellModel
 from agents.models.forest import Forest
 from agents.models.priority_queue import PriorityQueue
-from agents.parameters.declared import parameters_of
+from agents.parameters import parameters_of
 from arena import Entrant, Evaluation, Tournament, Training, run
 from envs import Hill
 

@@ -9,7 +9,7 @@ import pytest
 from page_tournament import HOSTILE, hostile_results
 
 from arena import Results, load, quick
-from arena.analysis.standings import leaderboard
+from arena.analysis import leaderboard
 from arena.results.results import trained
 
 

@@ -8,20 +8,19 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from agents.optimal import NEVER, Optimal, optimal_steps
 from agents.optimal import fewest_steps as optimal
 from agents.optimal.bang_bang import first_pattern, next_pattern, shorten
 from agents.optimal.boxes import Boxes
 from agents.optimal.certificate import Limit, Segment, first_beyond
 from agents.optimal.conservative_cells import cell_of, fewest_steps, image
-from agents.optimal.driver import Optimal
-from agents.optimal.fewest_steps import NEVER, optimal_steps
 from agents.optimal.lower_bound import departure, lower_bound
 from agents.optimal.relaxed_car import MOST, Relaxed, Spacing, patterns, spacing
 from arena import Entrant
 from arena.execution.loops import evaluate
-from arena.testing.suite import parametrize_with_checks
+from arena.testing import parametrize_with_checks
 from envs import Hill
-from envs.compilation.kernels import compile_loop
+from envs.compilation import compile_loop
 
 Floats = NDArray[np.float64]
 DEPTH = 9  # steps of the drives that are all tried

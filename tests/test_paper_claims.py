@@ -11,16 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arena import Evaluation, Results, Training, paper, random_walk, run
-from arena.cli.main import main
+from arena import Evaluation, RandomWalk, Results, Training, paper, random_walk, run
+from arena.cli import main
 from arena.common.npz import pack
+from arena.reproduction import Claim, iterations_spread, published
 from arena.reproduction import claims as paper_claims
-from arena.reproduction.published import published
-from arena.reproduction.tables import iterations_spread
-from arena.reproduction.verdicts import Claim, holds_claim, measured_claim, number_claim, untestable_claim
+from arena.reproduction.verdicts import holds_claim, measured_claim, number_claim, untestable_claim
 from arena.results.store import Store
 from arena.tournament.outcome import Outcome
-from arena.walks.series import RandomWalk
 
 FALLING = np.concatenate([np.linspace(2000, 150, 2000), np.full(2000, 150.0)]).astype(np.int64)
 Change = Callable[[str, int], dict[str, Any]]

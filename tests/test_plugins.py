@@ -16,12 +16,12 @@ from joblib.externals.loky import get_reusable_executor
 from test_drivers import told
 
 from agents import agent_class, agent_name, registry
-from agents.parameters.declared import parameters_of
+from agents.parameters import parameters_of
 from agents.registry import all_agents
 from arena import Entrant, Evaluation, Results, Tournament, Training, load, load_plugin, run, sweep
-from arena.cli.main import main
-from arena.testing.suite import findings
-from arena.tournament.configuration import load_tournament
+from arena.cli import main
+from arena.testing import findings
+from arena.tournament import load_tournament
 
 # Two agents of one behaviour, one compiled, one not; what they learn shows every part of the code.
 PLUGIN = """

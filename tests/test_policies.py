@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from agents import MomentumAgent, QLearning, Sarsa
 from agents.baselines import XiaoAgent
 from arena import Entrant, Evaluation, Policy, PolicyAgent, Results, Tournament, Training, load_plugin, run
-from arena.testing.suite import check_agent
+from arena.testing import check_agent
 from envs import mountain_car_v0
 
 

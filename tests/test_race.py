@@ -14,10 +14,11 @@ import pytest
 from page_tournament import HOSTILE, hostile_results
 from PIL import Image
 
-from agents.optimal.fewest_steps import optimal_steps
+from agents.optimal import optimal_steps
 from arena import Results, load
-from arena.cli.main import main
-from arena.figures.race import GHOST, frames, race, save_race
+from arena.cli import main
+from arena.figures import race, save_race
+from arena.figures.film import GHOST, frames
 from arena.results.results import trained
 from envs import Hill
 from envs.mountain_car_v0 import parallel_env

@@ -11,13 +11,12 @@ import pytest
 from made_up_results import made_up
 from page_tournament import HOSTILE, hostile_results
 
-from agents.optimal.fewest_steps import optimal_steps
+from agents.optimal import optimal_steps
 from arena import load
-from arena.analysis.curves import moving_average
-from arena.analysis.standings import leaderboard
-from arena.cli.main import main
+from arena.analysis import leaderboard, moving_average
+from arena.cli import main
 from arena.report.page import report
-from arena.results.digests import digest
+from arena.results import digest
 from arena.results.results import trained
 from envs import Hill
 

@@ -9,7 +9,7 @@ from made_up_results import made_up
 from page_tournament import HOSTILE, hostile_results
 
 from arena import load
-from arena.cli.main import main
+from arena.cli import main
 from arena.report.sparklines import LEVELS, blocks, sparkline
 from arena.results.results import trained
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import special, stats
 
-from arena.analysis.curves import area, moving_average, settled
+from arena.analysis import area, moving_average, settled
 from arena.statistics.intervals import (
     bootstrap_interval,
     interquartile_mean,

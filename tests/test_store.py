@@ -22,8 +22,8 @@ from agents import MomentumAgent, RandomAgent
 from arena import Entrant, Tournament, load, run
 from arena.common.npz import pack, unpack
 from arena.report.tables import render
-from arena.reproduction.tables import compare
-from arena.results.digests import digest
+from arena.reproduction import compare
+from arena.results import digest
 from arena.results.store import SCHEMA_VERSION, Store
 from arena.tournament.outcome import Outcome, score
 

@@ -9,7 +9,7 @@ import pytest
 from compiled_agents import KINDS, assert_allocates_nothing, assert_same_bits_from_both_drivers
 from walks import A, B, Line, Square, episodes, learn_all, make, table
 
-from agents import HarmonicRate, LinearDecay, QLearning, Sarsa
+from agents import HarmonicRate, LinearDecay, QLearning, Sarsa, Softmax, UpperConfidence
 from agents.algorithms.double_q_learning import DoubleQLearning
 from agents.algorithms.expected_sarsa import ExpectedSarsa
 from agents.algorithms.monte_carlo import MonteCarlo
@@ -18,9 +18,7 @@ from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
 from agents.algorithms.tabular import Tabular
 from agents.algorithms.tutorial import TutorialQLearning
 from agents.baselines import XiaoAgent
-from agents.learning.exploration import Softmax, UpperConfidence
-from agents.parameters.declared import parameters_of
-from agents.parameters.inheritance import inherits
+from agents.parameters import inherits, parameters_of
 from envs import Hill
 
 RULES: list[dict[str, Any]] = [

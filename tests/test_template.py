@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 from agents import registry
 from arena import Entrant, Evaluation, Tournament, Training, load_plugin, run
-from arena.cli.main import main
+from arena.cli import main
 from arena.plugins.template import AGENT, TEST, write
+from arena.testing import findings
 from arena.testing.checks import CHECKS
-from arena.testing.suite import findings
 from arena.testing.timing import seconds_per_step
 
 METHODS = ["create", "act", "learn", "greedy"]

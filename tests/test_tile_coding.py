@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from agents import Grid
-from agents.discretization.tile_coding import TileCoding
+from agents.discretization import TileCoding
 from envs import Hill
-from envs.compilation.kernels import compile_loop
+from envs.compilation import compile_loop
 
 Features = NDArray[np.int64]
 BOOK = TileCoding.over(Hill(max_position=0.5))

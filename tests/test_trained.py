@@ -12,8 +12,8 @@ from agents.algorithms.dyna_q import DynaQ
 from agents.algorithms.sarsa_lambda import SarsaLambda
 from agents.contract import Observation
 from arena import Entrant, Evaluation, Results, Tournament, Training, run
+from arena.results import UnknownPolicyError
 from arena.results.results import trained
-from arena.results.trained import UnknownPolicyError
 
 
 class Secretive:

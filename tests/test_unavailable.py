@@ -10,11 +10,10 @@ from typing import Any
 import pytest
 
 from agents import agent_class, registry
-from arena import load, load_plugin, run
-from arena.cli.main import main
-from arena.results.digests import digest
-from arena.results.results import Results
-from arena.tournament.configuration import load_tournament
+from arena import Results, load, load_plugin, run
+from arena.cli import main
+from arena.results import digest
+from arena.tournament import load_tournament
 
 DRIVER = """
 import numpy as np

@@ -5,14 +5,13 @@ import pytest
 from numpy.typing import NDArray
 
 from agents.algorithms.value_iteration import GridPlanner, total_steps
-from agents.discretization.edge_grid import EdgeGrid
-from agents.discretization.voronoi import Voronoi
-from agents.optimal.fewest_steps import optimal_steps
+from agents.discretization import EdgeGrid, Voronoi
+from agents.optimal import optimal_steps
 from arena import Entrant
 from arena.execution.loops import evaluate
-from arena.testing.suite import parametrize_with_checks
+from arena.testing import parametrize_with_checks
 from envs import Hill
-from envs.compilation.kernels import compile_loop
+from envs.compilation import compile_loop
 
 STARTS = np.random.default_rng(1).uniform(-0.6, -0.4, 300)
 

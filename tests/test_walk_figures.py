@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from arena import random_walk
-from arena.figures.walks import draw_hill, draw_lengths, save_figure
-from arena.reproduction.walk_study import study
+from arena.figures import draw_hill, draw_lengths
+from arena.figures.walks import save_figure
+from arena.reproduction import study
 from arena.walks.distributions import fit_all
 from envs import Hill
 

@@ -26,7 +26,7 @@ def race(
     ] = None,
 ) -> None:
     """Race trained cars from one start, the optimal drive beside them as a ghost."""
-    from arena.figures.race import SUFFIXES, race, save_race, show
+    from arena.figures.film import SUFFIXES, race, save_race, show
     from arena.results.results import best_entrants
     from envs.foundation.checks import choice
 

@@ -28,8 +28,8 @@ from agilerl.training.train_off_policy import train_off_policy  # type: ignore[i
 from agilerl.utils.utils import make_multi_agent_vect_envs, make_vect_envs  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from agilerl.vector import PzDummyVecEnv  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from agilerl.wrappers.agent import AsyncAgentsWrapper  # type: ignore[import-not-found, unused-ignore]  # its own environment
-from clients.apart import Apart
-from clients.countdown import Countdown
+from apart import Apart
+from countdown import Countdown
 
 from envs import mountain_car_v0
 from envs.parked import Parked

@@ -17,7 +17,7 @@ import gymnasium
 import pettingzoo
 import pytest
 import ray  # type: ignore[import-not-found, unused-ignore]  # its own environment
-from clients.apart import Apart
+from apart import Apart
 from pettingzoo.utils import parallel_to_aec
 from ray.rllib.algorithms.ppo import PPOConfig  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from ray.rllib.env.multi_agent_episode import MultiAgentEpisode  # type: ignore[import-not-found, unused-ignore]  # its own environment

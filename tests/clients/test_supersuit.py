@@ -14,7 +14,7 @@ import gymnasium
 import numpy as np
 import pytest
 import supersuit  # type: ignore[import-not-found, unused-ignore]  # its own environment
-from clients.countdown import Countdown
+from countdown import Countdown
 
 from envs.mountain_car_v0 import parallel_env
 

@@ -17,8 +17,8 @@ import gymnasium
 import numpy as np
 import pytest
 import torch  # type: ignore[import-not-found, unused-ignore]  # its own environment
-from clients.apart import Apart
-from clients.countdown import Countdown
+from apart import Apart
+from countdown import Countdown
 from pettingzoo.utils import parallel_to_aec
 from tianshou.algorithm import DQN  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from tianshou.algorithm.modelfree.dqn import DiscreteQLearningPolicy  # type: ignore[import-not-found, unused-ignore]  # its own environment

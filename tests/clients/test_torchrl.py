@@ -16,7 +16,7 @@ import gymnasium
 import pettingzoo
 import pytest
 import torch  # type: ignore[import-not-found, unused-ignore]  # its own environment
-from clients.countdown import Countdown
+from countdown import Countdown
 from torchrl.collectors import Collector  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from torchrl.data import Categorical  # type: ignore[import-not-found, unused-ignore]  # its own environment
 from torchrl.envs import (  # type: ignore[import-not-found, unused-ignore]  # its own environment

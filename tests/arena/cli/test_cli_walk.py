@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from paths import ROOT
 
 from arena import random_walk
 from arena.cli import main
@@ -22,7 +23,6 @@ goal_position = -0.35
 integrator = "explicit"
 """
 STEEP = "[hill]\nthrust = 0.0\n"
-ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture(autouse=True)

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 from agents.registry import BUILT_IN
 from arena import Evaluation, Tournament, Training, field, run
@@ -37,7 +38,7 @@ def test_the_field_races_compiled() -> None:
 
 @pytest.mark.slow
 def test_the_search_goes_on_where_it_stopped_and_writes_a_tournament(tmp_path: Path) -> None:
-    script = str(Path(__file__).parent.parent / "scripts" / "tune_field.py")
+    script = str(ROOT / "scripts" / "tune_field.py")
     for trials in ("1", "2"):
         options = ["--agent", "expected-sarsa", "--trials", trials, "--write", "found.toml"]
         done = subprocess.run(
@@ -57,7 +58,7 @@ def test_the_search_goes_on_where_it_stopped_and_writes_a_tournament(tmp_path: P
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["watkins-q-lambda", "q-learning", "xiao"])
 def test_the_readme_shows_what_the_field_prints(name: str) -> None:
-    readme = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
     (shown,) = re.findall(rf"^ \S+ +{name} +(\S+ ± \S+) +(\S+) +(\S+) +(\S+)$", readme, re.MULTILINE)
     whole = field()
     entrants = tuple(one for one in whole.entrants if one.name == name)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from paths import ROOT
 
 from arena import Evaluation, RandomWalk, Results, Training, paper, random_walk, run
 from arena.cli import main
@@ -205,7 +206,7 @@ def test_the_command_prints_a_verdict_on_each_and_writes_the_page(
 
 
 def test_the_page_of_the_docs_has_the_claims_of_the_program(file: Path) -> None:
-    page = (Path(__file__).parent.parent / "docs" / "paper.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
     assert main(["paper", file.name, "--walks", "2", "--jobs", "1", "--markdown", "now.md"]) == 0
 
     def statements(text: str) -> list[str]:

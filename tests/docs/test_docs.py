@@ -10,12 +10,12 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from test_plugins import BROKEN
+from broken_plugins import BROKEN
+from paths import ROOT
 
 from arena.tournament import from_dict
 from arena.tournament.readings import READINGS
 
-ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SESSION = ROOT / "docs" / "plugins.md"  # its blocks build on one another
 
@@ -56,7 +56,7 @@ def test_toml_examples_are_tournaments(code: str) -> None:
 @pytest.mark.slow
 def test_the_page_on_plugins_is_a_session_that_goes_as_it_says(tmp_path: Path) -> None:
     done = {"toml": 0, "python": 0, "console": 0}
-    shutil.copy(ROOT / "tests" / "stand_ins" / "stable_baselines3.py", tmp_path)
+    shutil.copy(ROOT / "tests" / "support" / "stand_ins" / "stable_baselines3.py", tmp_path)
     for language, code in re.findall(r"```(\w+)\n(.*?)```", SESSION.read_text(), re.DOTALL):
         done[language] += 1
         name = re.match(r"# ([\w.]+)\n", code)

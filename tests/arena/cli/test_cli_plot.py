@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from made_up_results import made_up
+from paths import ROOT
 from PIL import Image
 
 from agents import MomentumAgent, RandomAgent, Sarsa
@@ -64,7 +65,7 @@ def test_the_size_is_chosen() -> None:
 
 
 def test_the_gallery_shows_every_kind_and_the_command_that_makes_it() -> None:
-    text = (Path(__file__).parent.parent / "docs" / "gallery.md").read_text()
+    text = (ROOT / "docs" / "gallery.md").read_text()
     shown = re.findall(
         r"^!\[.*\]\((.*)\)\n\n```console\n\$ arena (plot|race) .* -o docs/(.*)$", text, re.MULTILINE
     )

@@ -4,10 +4,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from bits import bits_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from test_drivers import told
 
 from agents import Grid, HarmonicRate, LinearDecay, Sarsa
 from agents.algorithms.linear import epsilon_greedy_of
@@ -477,7 +477,7 @@ def test_both_drivers_get_the_same_bits(hill: Hill) -> None:
     ):
         assert set(compiled.frame().driver) == {"compiled"}
         assert set(interpreted.frame().driver) == {"pettingzoo"}
-        assert told(compiled) == told(interpreted)
+        assert bits_of(compiled) == bits_of(interpreted)
         kept = compiled.arrays(NAMES[0])
         assert kept.keys() == {"weights", "lengths", "test_lengths", "test_reached"}
         assert np.count_nonzero(kept["weights"]) > 50

@@ -4,8 +4,8 @@ import logging
 from pathlib import Path
 
 import pytest
+from bits import bits_of
 from hand_made_agents import Astray, Failing, Leaky, Scripted, Uncompilable, race_of
-from test_drivers import told
 
 from arena import Entrant, Tournament, load, run
 from arena.results.store import Store
@@ -15,7 +15,7 @@ def test_a_results_file_is_continued_and_finished_runs_are_not_repeated(
     small: Tournament, tmp_path: Path
 ) -> None:
     with run(small, n_jobs=1) as whole:
-        expected = told(whole)
+        expected = bits_of(whole)
     path = tmp_path / "deep" / "small.sqlite"
 
     class Stop(Exception):
@@ -33,7 +33,7 @@ def test_a_results_file_is_continued_and_finished_runs_are_not_repeated(
 
     seen: list[tuple[int, int]] = []
     with run(small, path, n_jobs=1, progress=lambda *at: seen.append(at)) as results:
-        assert told(results) == expected
+        assert bits_of(results) == expected
         after = results.frame().set_index(["entrant", "replicate"])
     assert seen == [(2, 4), (3, 4), (4, 4)]
     before = kept.set_index(["entrant", "replicate"])
@@ -41,7 +41,7 @@ def test_a_results_file_is_continued_and_finished_runs_are_not_repeated(
 
     seen.clear()
     with run(small, path, n_jobs=1, progress=lambda *at: seen.append(at)) as results:
-        assert told(results) == expected
+        assert bits_of(results) == expected
     assert seen == [(4, 4)]
 
 
@@ -90,11 +90,11 @@ def test_an_entrant_that_fails_is_a_result_and_the_others_are_as_without_it(
     small: Tournament, driver: str, agent: type[Leaky], reason: str
 ) -> None:
     with run(small, n_jobs=1, driver=driver) as results:
-        expected = told(results)[1]
+        expected = bits_of(results)[1]
     tournament = race_of(*small.entrants, Entrant("bad", agent))
     with run(tournament, n_jobs=1, driver=driver) as results:
         runs = {(one["entrant"], one["replicate"]): one for one in results.runs}
-        found = told(results)[1]
+        found = bits_of(results)[1]
     assert {key: found[key] for key in expected} == expected
     for replicate in (0, 1):
         bad = runs["bad", replicate]

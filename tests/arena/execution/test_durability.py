@@ -13,11 +13,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 from arena import load
 from arena.cli import main
 
-ROOT = Path(__file__).parent.parent
 RACE = runpy.run_path(str(ROOT / "scripts" / "kill_and_continue.py"))["RACE"]
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="sends POSIX signals")
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from test_drivers import told
+from bits import bits_of
 
 from agents import Softmax, UpperConfidence
 from arena import Entrant, Evaluation, Tournament, Training, run
@@ -32,7 +32,7 @@ def assert_same_bits_from_both_drivers(cls: type[Any], parameters: dict[str, Any
         run(race, n_jobs=1, driver="pettingzoo") as interpreted,
     ):
         assert set(compiled.frame().status) == set(interpreted.frame().status) == {"finished"}
-        assert told(compiled) == told(interpreted)
+        assert bits_of(compiled) == bits_of(interpreted)
         lengths = [compiled.arrays("it", replicate)["lengths"] for replicate in range(2)]
     assert np.min(lengths) < limit == np.max(lengths)
 

@@ -8,10 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 from arena import load
 
-PACKAGE = Path(__file__).parent / "plugin_package"
+PACKAGE = ROOT / "tests" / "plugin_package"
 ORIGIN = "package example-drivers 1.2.3"
 LACKS = "TypeError: agent must have the methods act, learn, greedy; Mute lacks greedy"
 REFUSED = [

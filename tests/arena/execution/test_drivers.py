@@ -5,17 +5,17 @@ from typing import Any
 import joblib
 import numpy as np
 import pytest
+from bits import bits_of
 from hand_made_agents import Leaky, race_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agents import HarmonicRate, LinearDecay, QLearning, Sarsa
 from agents.registry import BUILT_IN
-from arena import Entrant, Evaluation, Results, Tournament, Training, run
+from arena import Entrant, Evaluation, Tournament, Training, run
 from arena.tournament.readings import READINGS
 from envs import Hill
 
-SCORES = ["entrant", "replicate", "accuracy", "mean_length", "iterations", "status"]
 HILLS = {
     "default": Hill(),
     "friction": Hill(friction=20.0, thrust=1.5),
@@ -23,18 +23,6 @@ HILLS = {
     "steeper": Hill(omega=3.3, mass=900.0, min_position=-1.1, time_step=1.2),
     "elastic": Hill(inelastic_wall=False, min_position=-0.9),
 }
-
-
-def told(results: Results) -> tuple[list[Any], dict[Any, Any]]:
-    """Scores and arrays of all runs, to compare."""
-    frame = results.frame()
-    arrays = {}
-    for entrant, replicate in zip(frame.entrant, frame.replicate):
-        found = results.arrays(entrant, replicate)
-        arrays[entrant, replicate] = {
-            name: (array.dtype.str, array.shape, array.tobytes()) for name, array in found.items()
-        }
-    return frame[SCORES].astype(object).where(frame[SCORES].notna(), None).to_numpy().tolist(), arrays
 
 
 @pytest.mark.parametrize("hill", HILLS.values(), ids=HILLS)
@@ -55,7 +43,7 @@ def test_both_drivers_get_the_same_bits_on_every_hill(hill: Hill, seed: int) -> 
     ):
         assert set(compiled.frame().driver) == {"compiled"}
         assert set(interpreted.frame().driver) == {"pettingzoo"}
-        assert told(compiled) == told(interpreted)
+        assert bits_of(compiled) == bits_of(interpreted)
         assert {"values", "visits", "lengths"} <= compiled.arrays("sarsa").keys()
 
 
@@ -70,7 +58,7 @@ def test_every_reading_gets_the_same_bits_from_both_drivers(reading: str) -> Non
         run(tournament, n_jobs=1, driver="compiled") as compiled,
         run(tournament, n_jobs=1, driver="pettingzoo") as interpreted,
     ):
-        assert told(compiled) == told(interpreted)
+        assert bits_of(compiled) == bits_of(interpreted)
 
 
 @settings(max_examples=15, deadline=None)
@@ -97,26 +85,26 @@ def test_both_drivers_agree_whatever_the_parameters(
         run(tournament, n_jobs=1, driver="compiled") as compiled,
         run(tournament, n_jobs=1, driver="pettingzoo") as interpreted,
     ):
-        assert told(compiled) == told(interpreted)
+        assert bits_of(compiled) == bits_of(interpreted)
 
 
 @pytest.mark.parametrize("driver", ["compiled", "pettingzoo"])
 @pytest.mark.parametrize("backend", ["loky", "threading"])
 def test_workers_and_backends_change_no_bit(small: Tournament, driver: str, backend: str) -> None:
     with run(small, n_jobs=1, driver=driver) as alone:
-        expected = told(alone)
+        expected = bits_of(alone)
     with joblib.parallel_config(backend=backend), run(small, n_jobs=2, driver=driver) as together:
-        assert told(together) == expected
+        assert bits_of(together) == expected
 
 
 @pytest.mark.parametrize("driver", ["compiled", "pettingzoo"])
 def test_other_entrants_and_their_order_change_no_bit(small: Tournament, driver: str) -> None:
     q, s = small.entrants
     with run(small, n_jobs=1, driver=driver) as both:
-        expected = told(both)[1]
+        expected = bits_of(both)[1]
     for entrants in ((s, q), (q,), (Entrant("new", Leaky), s)):
         with run(race_of(*entrants), n_jobs=1, driver=driver) as others:
-            found = told(others)[1]
+            found = bits_of(others)[1]
         assert {key: found[key] for key in found if key in expected} == {
             key: expected[key] for key in found if key in expected
         }

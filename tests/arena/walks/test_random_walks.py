@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import joblib
@@ -14,12 +13,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from paths import ROOT
 
 from arena import InterruptedWalk, RandomWalk, random_walk
 from envs import Hill
 from envs.foundation.streams import stream
 
-SCRIPTS = Path(__file__).parent.parent / "scripts"
+SCRIPTS = ROOT / "scripts"
 NEAR = Hill(goal_position=-0.35)
 """A hill with short walks."""
 

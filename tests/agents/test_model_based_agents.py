@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from bits import bits_of
 from compiled_agents import KINDS, NEAR, assert_allocates_nothing, assert_same_bits_from_both_drivers
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from test_drivers import told
 from walks import A, B, Square, episodes, learn_all, make, table
 
 import agents.algorithms.fitted_q_iteration
@@ -443,7 +443,7 @@ def test_same_seed_gives_the_same_bits() -> None:
         (Entrant("it", FittedQIteration, **QUICK),), NEAR, Training(5, 60), Evaluation(3, 60), replicates=2
     )
     with run(race, n_jobs=1) as results, run(race, n_jobs=1) as again:
-        assert told(results) == told(again)
+        assert bits_of(results) == bits_of(again)
         assert set(results.frame().driver) == {"pettingzoo"}
         arrays = results.arrays("it")
         assert arrays.keys() == {"values", "lengths", "test_lengths", "test_reached"}

@@ -3,7 +3,6 @@
 import importlib.util
 import math
 from itertools import product
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -12,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from paths import ROOT
 from scipy import special, stats
 
 from arena.analysis import area, moving_average, settled
@@ -309,7 +309,7 @@ def test_the_area_and_where_a_curve_settles() -> None:
 
 
 def script() -> ModuleType:
-    path = Path(__file__).parent.parent / "scripts" / "measured_coverage.py"
+    path = ROOT / "scripts" / "measured_coverage.py"
     spec = importlib.util.spec_from_file_location("measured_coverage", path)
     assert spec is not None
     assert spec.loader is not None

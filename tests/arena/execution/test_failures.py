@@ -7,7 +7,7 @@ from pathlib import Path
 import failing_agents as failing
 import joblib
 import pytest
-from test_drivers import told
+from bits import bits_of
 
 from agents import QLearning, Sarsa
 from arena import Entrant, Evaluation, Tournament, Training, run
@@ -53,12 +53,12 @@ def tournament(*entrants: Entrant) -> Tournament:
 @pytest.mark.slow
 def test_every_kind_of_failure_is_told_and_the_healthy_are_as_without_it(tmp_path: Path) -> None:
     with run(tournament(*HEALTHY), n_jobs=2) as results:
-        expected = told(results)[1]
+        expected = bits_of(results)[1]
     bad = [Entrant(kind.__name__, kind) for kind in REASONS]
     began = time.monotonic()
     with run(tournament(*bad[:8], *HEALTHY, *bad[8:]), tmp_path / "r.sqlite", n_jobs=2) as results:
         runs = {one["entrant"]: one for one in results.runs}
-        found = told(results)[1]
+        found = bits_of(results)[1]
     assert time.monotonic() - began < 150.0
     assert {key: found[key] for key in expected} == expected
     reasons = {kind.__name__: runs[kind.__name__]["error"].strip().splitlines()[-1] for kind in REASONS}

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from paths import ROOT
 
 from agents import QLearning, Sarsa
 from envs import Hill
@@ -48,7 +49,7 @@ print(compile_loop(loop, plugin)(plugin), "cached" if any(hits) else "compiled")
 
 def ask(folder: Path) -> str:
     """What a new process computes with the plugin in ``folder``."""
-    path = os.pathsep.join([str(folder), str(Path(__file__).parent.parent)])
+    path = os.pathsep.join([str(folder), str(ROOT)])
     environment = os.environ | {"PYTHONPATH": path, "ARENA_CACHE_DIR": str(folder / "kernels")}
     done = subprocess.run(
         [sys.executable, "-c", ASK], env=environment, capture_output=True, text=True, check=True

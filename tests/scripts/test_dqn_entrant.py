@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_drivers import told
+from bits import bits_of
+from paths import ROOT
 
 from agents import QLearning, registry
 from arena import Entrant, Evaluation, Tournament, Training, load_plugin, run
@@ -17,7 +18,7 @@ from envs import Hill
 pytest.importorskip("stable_baselines3", reason="Stable-Baselines3, and PyTorch with it, is not installed")
 pytestmark = pytest.mark.slow
 
-SCRIPT = Path(__file__).parent.parent / "scripts" / "dqn_entrant.py"
+SCRIPT = ROOT / "scripts" / "dqn_entrant.py"
 SMALL = {"width": 16, "batch_size": 16, "learning_starts": 50, "train_every": 8, "gradient_steps": 2}
 
 
@@ -45,11 +46,11 @@ def test_two_workers_get_the_bits_of_one_process_and_keep_the_weights(agent: Any
     with run(tournament, n_jobs=2) as results:
         assert {one["status"] for one in results.runs} == {"finished"}
         arrays = [results.arrays("dqn", replicate) for replicate in (0, 1)]
-        expected = told(results)
+        expected = bits_of(results)
     assert arrays[0]["q_net_0_weight"].shape == (16, 2)
     assert not np.array_equal(arrays[0]["q_net_0_weight"], arrays[1]["q_net_0_weight"])
     with run(tournament, n_jobs=1) as results:
-        assert told(results) == expected
+        assert bits_of(results) == expected
 
 
 def test_it_learns_which_action_is_rewarded(agent: Any) -> None:

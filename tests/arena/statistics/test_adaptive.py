@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bits import bits_of
 from hand_made_agents import Failing
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_up_results import made_up
-from test_drivers import told
 
 from agents import MomentumAgent, QLearning, RandomAgent
 from arena import Entrant, Evaluation, Tournament, Training, load, run
@@ -74,14 +74,14 @@ def test_it_stops_as_soon_as_the_first_is_decided_with_the_bits_of_a_fixed_tourn
 ) -> None:
     seen: list[tuple[int, int]] = []
     with run(race(), tmp_path / "a.sqlite", n_jobs=1, progress=lambda *at: seen.append(at)) as results:
-        adaptive = told(results)
+        adaptive = bits_of(results)
         board = leaderboard(results)
         assert len(results.runs) == 20
         assert repr(results) == "<Results of 'ad': 20 of 40 runs>"
     assert seen[0] == (0, 20)
     assert seen[-1] == (20, 20)
     with run(race(replicates=10), n_jobs=1) as fixed:
-        assert told(fixed) == adaptive
+        assert bits_of(fixed) == adaptive
     assert [one.entrant for one in board.standings] == ["m", "r"]
     assert [one.place for one in board.standings] == [1, 2]
     (remark,) = board.remarks
@@ -120,7 +120,7 @@ def test_it_is_continued_by_the_same_tournament(tmp_path: Path) -> None:
         return progress
 
     with run(race(*twins), n_jobs=1) as whole:
-        expected, hashed = told(whole), digest(whole)
+        expected, hashed = bits_of(whole), digest(whole)
     for wanted in (7, 15):
         with pytest.raises(Stop):
             run(race(*twins), path, n_jobs=1, progress=stop_at(wanted))
@@ -129,7 +129,7 @@ def test_it_is_continued_by_the_same_tournament(tmp_path: Path) -> None:
             assert "not finished" in leaderboard(part).remarks[0]
             assert {one.place for one in leaderboard(part).standings} == {1}
     with run(race(*twins), path, n_jobs=1) as results:
-        assert told(results) == expected
+        assert bits_of(results) == expected
         assert digest(results) == hashed
     before = path.read_bytes()
     seen: list[tuple[int, int]] = []

@@ -30,6 +30,7 @@ from agents.baselines import MomentumAgent, RandomAgent, XiaoAgent
 from agents.contract import Agent
 from agents.optimal.driver import Optimal
 from envs.foundation.checks import choice
+from envs.foundation.errors import InvalidTypeError, InvalidValueError
 
 GROUP = "arena.agents"
 
@@ -77,7 +78,7 @@ class Registered:
     origin: str
 
 
-class BrokenAgentError(ValueError):
+class BrokenAgentError(InvalidValueError):
     """An agent of an installed package that cannot be used; the message is one sentence that says why."""
 
 
@@ -94,7 +95,7 @@ def register(name: str, agent: type[Any], origin: str = "registered by a script"
     check_methods(agent)
     taken = all_agents()[0].get(name)
     if taken and taken.origin != origin:
-        raise ValueError(f"agent {name!r} of {origin} has a name that is taken: {taken.origin}")
+        raise InvalidValueError(f"agent {name!r} of {origin} has a name that is taken: {taken.origin}")
     _registered[name] = Registered(name, agent, origin)
 
 
@@ -144,17 +145,17 @@ def check_methods(agent: Any) -> None:
         TypeError: when it has not.
     """
     if not isinstance(agent, type):
-        raise TypeError(f"agent must be a class, got {agent!r}")
+        raise InvalidTypeError(f"agent must be a class, got {agent!r}")
     for method, arguments in _METHODS.items():
         found = getattr(agent, method, None)
         if not callable(found):
-            raise TypeError(
+            raise InvalidTypeError(
                 f"agent must have the methods {', '.join(_METHODS)}; {agent.__name__} lacks {method}"
             )
         try:
             inspect.signature(found).bind(None, *arguments)
         except TypeError:
-            raise TypeError(
+            raise InvalidTypeError(
                 f"{agent.__name__}.{method} must take (self, {', '.join(arguments)}), "
                 f"got {inspect.signature(found)}"
             ) from None
@@ -169,7 +170,7 @@ def _check_create(agent: type[Any]) -> None:
     kinds = [one.kind for one in found.parameters.values()]
     positional = sum(kind in (inspect.Parameter.POSITIONAL_ONLY, _EITHER) for kind in kinds)
     if positional != 1 and inspect.Parameter.VAR_POSITIONAL not in kinds:
-        raise TypeError(
+        raise InvalidTypeError(
             f"{agent.__name__}.create must be a class method that takes (cls, task, *, its parameters), "
             f"got {found} without the class"
         )

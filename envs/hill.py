@@ -7,6 +7,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from envs.foundation.checks import Validated, choice, number
+from envs.foundation.errors import InvalidTypeError
 
 State = tuple[float, float]
 
@@ -114,7 +115,7 @@ class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
         dynamics: Dynamics | str = Dynamics.SIMPLIFIED,
     ) -> Self:
         if not isinstance(inelastic_wall, (bool, np.bool_)):
-            raise TypeError(f"inelastic_wall must be true or false, got {inelastic_wall!r}")
+            raise InvalidTypeError(f"inelastic_wall must be true or false, got {inelastic_wall!r}")
         low = number("min_position", min_position)
         high = number("max_position", max_position, low, above=True)
         goal = number("goal_position", goal_position, low, high, above=True)

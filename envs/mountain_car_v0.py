@@ -22,6 +22,7 @@ from pettingzoo.utils import AssertOutOfBoundsWrapper, parallel_to_aec
 
 from envs.fleet import Fleet
 from envs.foundation.checks import choice, instance, integer
+from envs.foundation.errors import InvalidTypeError, InvalidValueError
 from envs.foundation.streams import stream
 from envs.hill import Hill, State
 from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Rendered
@@ -185,7 +186,7 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int], EzPickle):  # t
             ValueError: before the first reset.
         """
         if not self._streams:
-            raise ValueError("state is there after the first reset, not before")
+            raise InvalidValueError("state is there after the first reset, not before")
         return self._fleet.states.ravel().copy()
 
     def shown(self) -> tuple[dict[str, State], int]:
@@ -201,27 +202,27 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int], EzPickle):  # t
 
 def _names(cars: int | Iterable[str]) -> list[str]:
     if isinstance(cars, str):
-        raise TypeError(f"cars must be a number or a list of names, got {cars!r}")
+        raise InvalidTypeError(f"cars must be a number or a list of names, got {cars!r}")
     if not isinstance(cars, Iterable):
         return [f"car_{number}" for number in range(integer("cars", cars, 1))]
     names = list(cars)
     if not names or not all(isinstance(name, str) and name for name in names):
-        raise ValueError(f"cars must be one or more names that are not empty, got {names!r}")
+        raise InvalidValueError(f"cars must be one or more names that are not empty, got {names!r}")
     if len(set(names)) < len(names):
-        raise ValueError(f"cars must have names that differ, got {names!r}")
+        raise InvalidValueError(f"cars must have names that differ, got {names!r}")
     return names
 
 
 def _starts(hill: Hill, starts: Any, cars: list[str]) -> dict[str, State]:
     if not isinstance(starts, Mapping) or not starts.keys() <= set(cars):
-        raise ValueError(f"start must give cars of {cars}, got {starts!r}")
+        raise InvalidValueError(f"start must give cars of {cars}, got {starts!r}")
     return {car: checked_state(hill, state, f" of {car}") for car, state in starts.items()}
 
 
 def _action(actions: Mapping[str, int], car: str, n_actions: int) -> int:
     if car not in actions:
-        raise ValueError(f"actions must have one for each live car, got none for {car!r}")
+        raise InvalidValueError(f"actions must have one for each live car, got none for {car!r}")
     action = integer(f"action of {car!r}", actions[car], 0)
     if action >= n_actions:
-        raise ValueError(f"action of {car!r} must be less than {n_actions}, got {action}")
+        raise InvalidValueError(f"action of {car!r} must be less than {n_actions}, got {action}")
     return action

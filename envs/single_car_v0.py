@@ -13,6 +13,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from envs.foundation.checks import choice, instance, integer
+from envs.foundation.errors import InvalidValueError
 from envs.hill import Hill, State
 from envs.rendering import FRAMES_PER_SECOND, RENDER_MODES, Rendered
 from envs.starts import start_state
@@ -83,10 +84,10 @@ class SingleCarEnv(Rendered, gymnasium.Env[Observation, np.int64]):
             TypeError, ValueError: when the action is not 0, 1 or 2, or before the first reset.
         """
         if self._state is None:
-            raise ValueError("reset must be called before step")
+            raise InvalidValueError("reset must be called before step")
         chosen = integer("action", action, 0)
         if chosen >= self.hill.n_actions:
-            raise ValueError(f"action must be less than {self.hill.n_actions}, got {action}")
+            raise InvalidValueError(f"action must be less than {self.hill.n_actions}, got {action}")
         self._state, reward, terminated = self.hill.step(self._state, chosen)
         self._steps += 1
         self.follow()

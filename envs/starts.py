@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from envs.foundation.checks import number
+from envs.foundation.errors import InvalidValueError
 from envs.hill import Hill, State
 
 
@@ -21,7 +22,7 @@ def checked_state(hill: Hill, state: Any, of: str = "") -> State:
         TypeError, ValueError: when it is no such state.
     """
     if not isinstance(state, Iterable) or len(pair := tuple(state)) != 2:
-        raise ValueError(f"start{of} must be (position, velocity), got {state!r}")
+        raise InvalidValueError(f"start{of} must be (position, velocity), got {state!r}")
     position, velocity = pair
     return (
         number(f"start position{of}", position, hill.min_position, hill.goal_position),

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from envs.fleet import Flags, Fleet, Floats
 from envs.foundation.checks import choice, instance, integer
+from envs.foundation.errors import InvalidValueError
 from envs.hill import Hill
 from envs.rendering import FRAMES_PER_SECOND, Image, picture
 from envs.starts import start_state
@@ -99,7 +100,7 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
         elif len(seed) == self.num_envs:
             seeds = list(seed)
         else:
-            raise ValueError(f"seed must be a number or {self.num_envs} of them, got {seed!r}")
+            raise InvalidValueError(f"seed must be a number or {self.num_envs} of them, got {seed!r}")
         for car in np.flatnonzero(mask):
             if seeds[car] is not None:
                 self._streams[car] = seeding.np_random(seeds[car])[0]
@@ -118,10 +119,12 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
         """
         chosen = _checked_actions(actions, self.num_envs, self.hill.n_actions)
         if np.isnan(self._fleet.states).any():
-            raise ValueError("reset must be called before step")
+            raise InvalidValueError("reset must be called before step")
         anew = self._ended
         if self.autoreset_mode == AutoresetMode.DISABLED and anew.any():
-            raise ValueError(f"cars that have ended must be reset, got a step of {np.flatnonzero(anew)}")
+            raise InvalidValueError(
+                f"cars that have ended must be reset, got a step of {np.flatnonzero(anew)}"
+            )
         rewards, terminated = self._drive(chosen, anew)
         self._steps += ~anew
         truncated = (self._steps >= self.max_episode_steps) & ~anew
@@ -174,14 +177,16 @@ def _checked_mask(mask: Any, count: int) -> Flags:
     if mask is None:
         return np.ones(count, np.bool_)
     if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (count,) or not mask.any():
-        raise ValueError(f"reset_mask must be a bool array of shape ({count},) with a True, got {mask!r}")
+        raise InvalidValueError(
+            f"reset_mask must be a bool array of shape ({count},) with a True, got {mask!r}"
+        )
     return mask
 
 
 def _checked_actions(actions: Any, count: int, n_actions: int) -> NDArray[np.int64]:
     chosen = np.asarray(actions)
     if chosen.shape != (count,) or chosen.dtype.kind not in "iu":
-        raise ValueError(f"actions must be integers of shape ({count},), got {actions!r}")
+        raise InvalidValueError(f"actions must be integers of shape ({count},), got {actions!r}")
     if chosen.min() < 0 or chosen.max() >= n_actions:
-        raise ValueError(f"actions must be at least 0 and less than {n_actions}, got {actions!r}")
+        raise InvalidValueError(f"actions must be at least 0 and less than {n_actions}, got {actions!r}")
     return chosen.astype(np.int64, copy=False)

@@ -15,6 +15,7 @@ from agents.discretization.edge_grid import EdgeGrid
 from agents.discretization.grid import Grid
 from agents.discretization.voronoi import Voronoi
 from agents.parameters.declared import Count
+from envs.foundation.errors import InvalidValueError
 
 Bins = Count | Sequence[Count] | Sequence[Sequence[float]]
 Binning = Literal["uniform", "quantile", "kmeans"]
@@ -42,11 +43,11 @@ def make_cells(task: Any, bins: Bins, binning: Binning, rng: np.random.Generator
     """
     if isinstance(bins, Sequence) and any(isinstance(part, Sequence) for part in bins):
         if len(bins) != len(task.low) or not all(isinstance(part, Sequence) for part in bins):
-            raise ValueError(
+            raise InvalidValueError(
                 f"bins must have a list of edges for each of {len(task.low)} dimensions, got {bins}"
             )
         if binning != "uniform":
-            raise ValueError(f"binning must be left out where bins are edges, got {binning!r}")
+            raise InvalidValueError(f"binning must be left out where bins are edges, got {binning!r}")
         return EdgeGrid.from_edges(cast("Sequence[Sequence[float]]", bins))
     grid = Grid.over(task, cast("int | Sequence[int]", bins))
     if binning == "uniform":

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from agents.contract import Observation
 from envs.foundation.checks import number
+from envs.foundation.errors import InvalidValueError
 
 
 class EdgeGrid(NamedTuple):
@@ -36,7 +37,9 @@ class EdgeGrid(NamedTuple):
         for given in edges:
             row = [number("bins", edge) for edge in given]
             if len(row) < 2 or not all(a < b for a, b in pairwise(row)):
-                raise ValueError(f"bins must be 2 or more ascending edges a dimension, got {tuple(given)!r}")
+                raise InvalidValueError(
+                    f"bins must be 2 or more ascending edges a dimension, got {tuple(given)!r}"
+                )
             rows.append(row[1:-1])
         inner = np.full((len(rows), max(1, *map(len, rows))), np.inf)
         for row, target in zip(rows, inner, strict=True):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from agents.contract import Observation, Task
 from envs.foundation.checks import instance, integer, number
+from envs.foundation.errors import InvalidValueError
 
 
 class _Parts(NamedTuple):
@@ -47,7 +48,7 @@ class Grid(_Parts):
         lows = tuple(number("low", x) for x in instance("low", low, Iterable))
         highs = tuple(number("high", x) for x in instance("high", high, Iterable))
         if len(lows) != len(highs) or not lows:
-            raise ValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
+            raise InvalidValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
         counts = _counts(bins, len(lows))
         for a, b in zip(lows, highs, strict=True):
             number("high", b, a, above=True)
@@ -113,7 +114,7 @@ def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:
     given = list(bins) if isinstance(bins, Iterable) else [bins] * dimensions
     counts = tuple(integer("bins", n, 1) for n in given)
     if len(counts) != dimensions:
-        raise ValueError(f"bins must have {dimensions} numbers, one a dimension, got {counts}")
+        raise InvalidValueError(f"bins must have {dimensions} numbers, one a dimension, got {counts}")
     return counts
 
 
@@ -125,7 +126,9 @@ def _edges(low: float, high: float, bins: int) -> NDArray[np.float64]:
         edge = float(a + k * h)
         edges[k] = edge if edge >= a + k * h else math.nextafter(edge, math.inf)
     if not np.all(np.diff(edges) > 0.0):
-        raise ValueError(f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]")
+        raise InvalidValueError(
+            f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]"
+        )
     return edges
 
 
@@ -140,4 +143,6 @@ def _scale(low: float, high: float, bins: int, edges: NDArray[np.float64]) -> fl
         scale = (1.0 - 2.0**-bits) * bins / (high - low)
         if np.all((below - low) * scale < k) and np.all((above - low) * scale >= k - 1):
             return float(scale)
-    raise ValueError(f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]")
+    raise InvalidValueError(
+        f"bins must leave cells that floats can tell apart, got {bins} in [{low}, {high}]"
+    )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from agents.contract import Observation, Task
 from envs.foundation.checks import instance, integer, number
+from envs.foundation.errors import InvalidValueError
 
 
 class _Parts(NamedTuple):
@@ -49,14 +50,14 @@ class TileCoding(_Parts):
         lows = tuple(number("low", x) for x in instance("low", low, Iterable))
         highs = tuple(number("high", x) for x in instance("high", high, Iterable))
         if len(lows) != len(highs) or not lows:
-            raise ValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
+            raise InvalidValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
         for a, b in zip(lows, highs, strict=True):
             number("high", b, a, above=True)
             number("high - low", b - a)
         given = tiles if isinstance(tiles, Iterable) else [tiles] * len(lows)
         counts = tuple(integer("tiles", n, 1) for n in given)
         if len(counts) != len(lows):
-            raise ValueError(f"tiles must have {len(lows)} numbers, one a dimension, got {counts}")
+            raise InvalidValueError(f"tiles must have {len(lows)} numbers, one a dimension, got {counts}")
         number_of_tilings = integer("tilings", tilings, 1)
         return super().__new__(
             cls, lows, highs, number_of_tilings, counts, _features(number_of_tilings, counts)

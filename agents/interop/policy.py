@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from envs.foundation.errors import InvalidValueError
+
 
 @dataclass(frozen=True, eq=False)
 class Policy:
@@ -34,7 +36,7 @@ class Policy:
             return {car: self(seen) for car, seen in observation.items()}
         seen = np.asarray(observation, np.float64)
         if seen.ndim not in (1, 2) or seen.shape[-1] != 2:
-            raise ValueError(f"observation must be of shape (2,) or (cars, 2), got shape {seen.shape}")
+            raise InvalidValueError(f"observation must be of shape (2,) or (cars, 2), got shape {seen.shape}")
         if seen.ndim == 1:
             return int(self.agent.greedy(seen))
         return np.array([self.agent.greedy(row) for row in seen], np.int64)

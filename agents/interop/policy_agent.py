@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from agents.baselines import DoesNotLearn
 from envs import Hill
+from envs.foundation.errors import InvalidTypeError, InvalidValueError
 
 _GRID = (40, 25)  # positions and velocities by which a policy is known
 
@@ -44,12 +45,14 @@ class PolicyAgent(DoesNotLearn):
             return
         known = cls().fingerprint()
         if cls().fingerprint(backwards=True) != known:
-            raise ValueError("policy must do the same at the same place, got one with chance or a memory")
+            raise InvalidValueError(
+                "policy must do the same at the same place, got one with chance or a memory"
+            )
 
         def create(kind: type[PolicyAgent], task: Any, *, fingerprint: str = known) -> PolicyAgent:
             agent = kind()
             if fingerprint != agent.fingerprint():
-                raise ValueError(
+                raise InvalidValueError(
                     f"fingerprint must be that of the policy, {agent.fingerprint()!r}, got {fingerprint!r}"
                 )
             return agent
@@ -59,7 +62,7 @@ class PolicyAgent(DoesNotLearn):
     def __init__(self) -> None:
         policy = getattr(self, "policy", None)
         if not callable(policy):
-            raise TypeError(f"policy must be callable, such as model.predict, got {policy!r}")
+            raise InvalidTypeError(f"policy must be callable, such as model.predict, got {policy!r}")
         self._ask = partial(policy, deterministic=True) if _can_be_deterministic(policy) else policy
 
     def greedy(self, observation: Any) -> int:
@@ -107,8 +110,8 @@ def _action(returned: Any) -> int:
     """
     action, state = returned if isinstance(returned, tuple) and len(returned) == 2 else (returned, None)
     if state is not None:
-        raise ValueError(f"policy must go by the observation alone, got one with a state: {state!r}")
+        raise InvalidValueError(f"policy must go by the observation alone, got one with a state: {state!r}")
     found = np.asarray(action)
     if found.size != 1 or found.dtype.kind not in "iu":
-        raise ValueError(f"policy must return one action, an integer, got {action!r}")
+        raise InvalidValueError(f"policy must return one action, an integer, got {action!r}")
     return int(found.item())

@@ -14,6 +14,7 @@ from agents.optimal.relaxed_car import Relaxed
 from agents.parameters.declared import Count, validated
 from envs import Dynamics, Hill
 from envs.foundation.checks import instance
+from envs.foundation.errors import InvalidValueError
 
 
 class _Table(NamedTuple):
@@ -57,9 +58,9 @@ class Optimal(DoesNotLearn, _Table):
 @lru_cache(maxsize=8)
 def _table(hill: Hill, bins: int) -> tuple[Grid, NDArray[np.int8]]:
     if hill.dynamics != Dynamics.SIMPLIFIED:
-        raise ValueError(f"dynamics must be simplified for this agent, got {hill.dynamics.label!r}")
+        raise InvalidValueError(f"dynamics must be simplified for this agent, got {hill.dynamics.label!r}")
     if not Relaxed.of(hill).applies:
-        raise ValueError(
+        raise InvalidValueError(
             f"friction must be less, for so long a time step and so steep a hill, got {hill.friction}"
         )
     cells = Grid.over(hill, bins)

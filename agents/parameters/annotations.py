@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from agents.parameters.bounds import NUMBERS, check_bounds, in_words, is_bound, split, within
 from agents.parameters.hints import type_hints
 from envs.foundation.checks import choice, integer, number
+from envs.foundation.errors import ArenaError, InvalidTypeError, InvalidValueError
 
 
 def settle(name: str, value: Any, annotation: Any) -> Any:
@@ -64,13 +65,13 @@ def as_tuples(value: Any) -> Any:
 
 def _boolean(name: str, value: Any) -> bool:
     if not isinstance(value, bool):
-        raise TypeError(f"{name} must be true or false, got {value!r}")
+        raise InvalidTypeError(f"{name} must be true or false, got {value!r}")
     return value
 
 
 def _nothing(name: str, value: Any) -> None:
     if value is not None:
-        raise TypeError(f"{name} must be nothing, got {value!r}")
+        raise InvalidTypeError(f"{name} must be nothing, got {value!r}")
 
 
 _UNIONS = (typing.Union, UnionType)
@@ -97,7 +98,7 @@ def _settle_literal(name: str, value: Any, options: tuple[Any, ...]) -> Any:
     for option in options:
         if type(option) is type(value) and option == value:
             return option
-    raise ValueError(f"{name} must be one of {', '.join(map(repr, options))}, got {value!r}")
+    raise InvalidValueError(f"{name} must be one of {', '.join(map(repr, options))}, got {value!r}")
 
 
 def _settle_union(name: str, value: Any, members: tuple[Any, ...]) -> Any:
@@ -110,28 +111,30 @@ def _settle_union(name: str, value: Any, members: tuple[Any, ...]) -> Any:
     for kind in kinds:
         if isinstance(value, kind):
             return _settle_named_tuple(name, value, kind)
-    problems: list[Exception] = []
+    problems: list[ArenaError] = []
     for member in members:
         try:
             return settle(name, value, member)
-        except (TypeError, ValueError) as problem:
+        except ArenaError as problem:
             problems.append(problem)
     near = [problem for problem in problems if isinstance(problem, ValueError)]
     if near:  # of the right type
         raise near[0]
-    raise TypeError(f"{name} must be {' or '.join(map(rule, members))}, got {value!r}")
+    raise InvalidTypeError(f"{name} must be {' or '.join(map(rule, members))}, got {value!r}")
 
 
 def _settle_sequence(
     name: str, value: Any, arguments: tuple[Any, ...], *, fixed: bool = False
 ) -> tuple[Any, ...]:
     if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Sequence):
-        raise TypeError(f"{name} must be a list, got {value!r}")
+        raise InvalidTypeError(f"{name} must be a list, got {value!r}")
     kinds = list(arguments)
     if not kinds or not fixed or kinds[-1] is Ellipsis:
         kinds = (kinds or [Any])[:1] * len(value)
     if len(kinds) != len(value):
-        raise ValueError(f"{name} must have {len(kinds)} value{'s' * (len(kinds) != 1)}, got {value!r}")
+        raise InvalidValueError(
+            f"{name} must have {len(kinds)} value{'s' * (len(kinds) != 1)}, got {value!r}"
+        )
     return tuple(settle(name, part, kind) for part, kind in zip(value, kinds, strict=True))
 
 
@@ -141,7 +144,7 @@ def _settle_instance(name: str, value: Any, kind: Any) -> Any:
     except TypeError:  # a protocol or a typed dictionary cannot be looked for
         fits = True
     if not fits:
-        raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
+        raise InvalidTypeError(f"{name} must be a {kind.__name__}, got {value!r}")
     return as_tuples(value)
 
 
@@ -151,7 +154,7 @@ def _settle_named_tuple(name: str, value: Any, kind: Any) -> Any:
         _check_fields(name, value, kind._fields)
         for field in inspect.signature(kind).parameters.values():
             if field.default is field.empty and field.name not in value:
-                raise TypeError(f"{name} must have the field {field.name}, got {value!r}")
+                raise InvalidTypeError(f"{name} must have the field {field.name}, got {value!r}")
         return _construct(name, kind, _settle_fields(name, value, kind))
     _settle_instance(name, value, kind)
     defaults = value._field_defaults
@@ -178,7 +181,7 @@ def _construct(name: str, make: Callable[..., Any], fields: Mapping[str, Any]) -
         return make(**fields)
     except (TypeError, ValueError) as problem:
         told = f"{name}.{problem}" if str(problem).partition(" ")[0] in fields else f"{name}: {problem}"
-        raise (TypeError if isinstance(problem, TypeError) else ValueError)(told) from problem
+        raise (InvalidTypeError if isinstance(problem, TypeError) else InvalidValueError)(told) from problem
 
 
 def _parts(base: Any, bounds: list[Any]) -> tuple[Any, tuple[Any, ...]]:

@@ -6,6 +6,8 @@ from typing import Annotated, Any
 
 from annotated_types import BaseMetadata, Ge, GroupedMetadata, Gt, Le, Lt
 
+from envs.foundation.errors import InvalidTypeError, InvalidValueError
+
 _KINDS = (Ge, Gt, Le, Lt)
 NUMBERS = (int, float)
 
@@ -35,7 +37,7 @@ def check_bounds(name: str, members: Sequence[Any], bounds: list[Any]) -> None:
     for bound in bounds:
         if not is_bound(bound) or not numeric:
             known = ", ".join(one.__name__ for one in _KINDS)
-            raise TypeError(f"{name} must be a number with bounds {known} or Interval, got {bound!r}")
+            raise InvalidTypeError(f"{name} must be a number with bounds {known} or Interval, got {bound!r}")
 
 
 def within(name: str, value: Any, bounds: list[Any]) -> Any:
@@ -51,7 +53,7 @@ def within(name: str, value: Any, bounds: list[Any]) -> Any:
             or (isinstance(bound, Le) and not value <= bound.le)
             or (isinstance(bound, Lt) and not value < bound.lt)
         ):
-            raise ValueError(f"{name} must be {in_words(bounds)}, got {value!r}")
+            raise InvalidValueError(f"{name} must be {in_words(bounds)}, got {value!r}")
     return value
 
 

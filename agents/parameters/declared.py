@@ -17,6 +17,7 @@ from annotated_types import Ge, Gt, Interval
 from agents.parameters.annotations import as_tuples, rule, settle
 from agents.parameters.hints import type_hints
 from envs.foundation.checks import choice
+from envs.foundation.errors import InvalidTypeError
 
 Create = TypeVar("Create", bound=Callable[..., Any])
 
@@ -102,7 +103,7 @@ def settle_all(agent: Any, label: str, given: Mapping[str, Any]) -> dict[str, An
             choice(f"parameter of {label}", name, declared)
     for one in declared.values():
         if one.required and one.name not in given:
-            raise TypeError(f"parameter {one.name} of {label} must be given")
+            raise InvalidTypeError(f"parameter {one.name} of {label} must be given")
     complete = {
         name: one.settle(given[name]) if name in given else one.default
         for name, one in declared.items()

@@ -4,6 +4,8 @@ import inspect
 from collections.abc import Callable, Collection
 from typing import Any, TypeVar
 
+from envs.foundation.errors import InvalidTypeError
+
 Create = TypeVar("Create", bound=Callable[..., Any])
 
 
@@ -35,7 +37,7 @@ def inherits(
         ]
         unknown = defaults.keys() - {one.name for one in taken}
         if unknown:
-            raise TypeError(f"defaults must be those of inherited parameters, got {sorted(unknown)}")
+            raise InvalidTypeError(f"defaults must be those of inherited parameters, got {sorted(unknown)}")
         create.__signature__ = own.replace(parameters=[*kept, *taken])  # type: ignore[attr-defined]  # for inspect
         create.__annotations__ = {one.name: annotations[one.name] for one in taken} | create.__annotations__
         return create

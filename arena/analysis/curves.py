@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arena.results.results import Results
 from envs.foundation.checks import integer, number
+from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -100,10 +101,10 @@ def reward_curves(results: Results, entrant: str, window: int = WINDOW) -> NDArr
     most = config["max_replicates"] if config["replicates"] == ADAPTIVE else config["replicates"]
     finished = list(_lengths(results, entrant, range(most)))
     if not finished:
-        raise ValueError(f"{entrant!r} has no finished run: there is no learning curve")
+        raise InvalidValueError(f"{entrant!r} has no finished run: there is no learning curve")
     episodes = config["training"]["episodes"]
     if integer("window", window, 1) > episodes:
-        raise ValueError(f"window must be at most the {episodes} training episodes, got {window}")
+        raise InvalidValueError(f"window must be at most the {episodes} training episodes, got {window}")
     return np.array([-moving_average(lengths, window) for lengths in finished])
 
 

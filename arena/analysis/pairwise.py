@@ -10,6 +10,7 @@ from arena.results.results import Results
 from arena.statistics.intervals import Estimate, bootstrap_interval, mean_estimate, probability_of_improvement
 from arena.statistics.permutation import at_most, holm, paired_permutation_test, sign_flip_test, too_few
 from envs.foundation.checks import choice, number
+from envs.foundation.errors import InvalidValueError
 
 
 @dataclass(frozen=True)
@@ -62,9 +63,9 @@ def compare_entrants(
     for name in (a, b):
         choice("entrant", name, scores.entrants)
     if a == b:
-        raise ValueError(f"entrants must be two, got {a!r} twice")
+        raise InvalidValueError(f"entrants must be two, got {a!r} twice")
     if not scores.replicates:
-        raise ValueError("there is no replicate that all entrants have run")
+        raise InvalidValueError("there is no replicate that all entrants have run")
     i, j = scores.entrants.index(a), scores.entrants.index(b)
     first, second = scores.values[by][i], scores.values[by][j]
     p_value = paired_permutation_test(costs[i], costs[j])
@@ -147,15 +148,15 @@ def regressions(
     allowed = number("max_regression", max_regression, 0)
     for key in ("hill", "training", "evaluation"):
         if new.config.get(key) != old.config.get(key):
-            raise ValueError(f"the files cannot be compared: their {key} differs")
+            raise InvalidValueError(f"the files cannot be compared: their {key} differs")
     after, before = scores_of(new, by), scores_of(old, by)
     names = [name for name in after.entrants if name in before.entrants]
     if not names:
-        raise ValueError("the files cannot be compared: they have no entrant in common")
+        raise InvalidValueError("the files cannot be compared: they have no entrant in common")
     both = sorted(set(after.replicates) & set(before.replicates))
     few = too_few(len(both), len(names), confidence, one_sided=True)
     if few:
-        raise ValueError(few)
+        raise InvalidValueError(few)
     now, then = _rows(after, by, names, both), _rows(before, by, names, both)
     sign = -1.0 if SCORES[by].more_is_better else 1.0
     worse = sign * (now - then)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from arena.analysis.regret import Bounds, fewest_steps
 from arena.results.results import Results
 from envs.foundation.checks import choice
+from envs.foundation.errors import InvalidValueError
 
 Floats = NDArray[np.float64]
 
@@ -130,7 +131,9 @@ def _regrets(results: Results, run: dict[str, Any], bounds: Bounds) -> Floats:
         lengths = np.full(evaluation["episodes"], float(evaluation["max_steps"]))
     least = np.asarray(bounds[number], dtype=float)
     if least.shape != lengths.shape:
-        raise ValueError(f"bounds of replicate {number} must have {len(lengths)} values, got {least.size}")
+        raise InvalidValueError(
+            f"bounds of replicate {number} must have {len(lengths)} values, got {least.size}"
+        )
     regrets: Floats = lengths - least
     return regrets
 

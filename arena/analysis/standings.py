@@ -12,6 +12,7 @@ from arena.statistics.permutation import too_few
 from arena.statistics.ranks import rank_distribution, tie_groups
 from arena.statistics.sequential import ADAPTIVE, decided, look_at
 from envs.foundation.checks import number
+from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -142,7 +143,7 @@ def check_confidence(confidence: float) -> None:
         ValueError: when it is not between 0 and 1.
     """
     if not 0.0 < number("confidence", confidence) < 1.0:
-        raise ValueError(f"confidence must be between 0 and 1, got {confidence!r}")
+        raise InvalidValueError(f"confidence must be between 0 and 1, got {confidence!r}")
 
 
 def _places_at(config: dict[str, Any], scores: Scores, confidence: float) -> tuple[float, tuple[str, ...]]:

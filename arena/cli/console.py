@@ -1,15 +1,30 @@
 """Exit codes, and what is said on stderr."""
 
 import sys
+import traceback
+from importlib import metadata
 
-BAD_INPUT = 2
 SOME_FAILED = 1
+BAD_INPUT = 2
+BUG = 70  # EX_SOFTWARE of sysexits.h
 INTERRUPTED = 130
 
 
-class _InterruptedError(Exception):
+class InterruptedRunError(Exception):
     """Ctrl-C while runs were written to a file, the only argument."""
 
 
-def _say(sentence: str) -> None:
+def say(sentence: str) -> None:
+    """Print a sentence on stderr."""
     print(f"arena: {sentence}", file=sys.stderr)
+
+
+def say_bug() -> None:
+    """Tell of the exception that is being handled: it is a mistake of ours, and where to report it."""
+    traceback.print_exc()
+    try:
+        urls = metadata.metadata("mountain-car-arena").get_all("Project-URL", [])
+    except metadata.PackageNotFoundError:  # run from a folder, without installation
+        urls = []
+    places = [url.removeprefix("Issues, ") for url in urls if url.startswith("Issues, ")]
+    say(" ".join(["this is a mistake of the arena; please report it with the lines above", *places]))

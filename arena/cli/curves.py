@@ -13,6 +13,7 @@ from rich.text import Text
 
 from arena.cli.options import AsJson, Confidence, File
 from arena.results.results import load
+from envs.foundation.errors import InvalidValueError
 
 
 def curves(
@@ -33,7 +34,7 @@ def curves(
     from arena.statistics.intervals import mean_interval
 
     if as_json and as_csv:
-        raise ValueError("--json and --csv must not be given together")
+        raise InvalidValueError("--json and --csv must not be given together")
     check_confidence(confidence)
     with load(file) as results:
         frame = learning_curves(results, level, window)

@@ -1,5 +1,6 @@
 """The command ``arena``. Progress and errors go to stderr, results to stdout."""
 
+import os
 import shlex
 import sys
 from collections.abc import Sequence
@@ -8,7 +9,7 @@ from typing import Any
 import typer
 
 from arena.cli.agents import add_commands
-from arena.cli.console import BAD_INPUT, INTERRUPTED, _InterruptedError, _say
+from arena.cli.console import BAD_INPUT, BUG, INTERRUPTED, InterruptedRunError, say, say_bug
 from arena.cli.curves import add_commands as add_curves_command
 from arena.cli.paper import add_commands as add_paper_command
 from arena.cli.plot import add_commands as add_plot_command
@@ -17,6 +18,7 @@ from arena.cli.report import add_commands as add_report_command
 from arena.cli.results import add_commands as add_result_commands
 from arena.cli.run import add_commands as add_run_commands
 from arena.cli.walk import add_commands as add_walk_command
+from envs.foundation.errors import ArenaError, InvalidValueError
 
 app = typer.Typer(
     help="Race agents up the Mountain Car's hill: they learn, and the arena scores them.",
@@ -38,17 +40,22 @@ add_walk_command(app)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit code is 0, 1 (an entrant failed), 2 (bad input) or 130."""
+    """Run the command line.
+
+    Returns:
+        The exit code: 0; 1 where an entrant failed or a check did; 2 for bad input, which is told in one
+        sentence; 70 for a mistake of our own, with its traceback; 130 after Ctrl-C.
+    """
     command = typer.main.get_command(app)
+    given = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = command.main(
-            args=None if arguments is None else list(arguments), prog_name="arena", standalone_mode=False
-        )
+        _check_encodable(given)
+        code = command.main(args=given, prog_name="arena", standalone_mode=False)
     except typer.Exit as stop:
         return stop.exit_code
-    except _InterruptedError as stop:
-        again = shlex.join(["arena", *(sys.argv[1:] if arguments is None else arguments)])
-        _say(f"interrupted; what was finished is in {stop}; to continue: {again}")
+    except InterruptedRunError as stop:
+        again = shlex.join(["arena", *given])
+        say(f"interrupted; what was finished is in {stop}; to continue: {again}")
         return INTERRUPTED
     except (typer.Abort, KeyboardInterrupt):
         return INTERRUPTED
@@ -56,24 +63,44 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stderr.close()
         return 0
     except Exception as error:
-        if hasattr(error, "format_message"):  # a mistake in the command line itself
-            _say(" ".join(error.format_message().split()) + _received(error, arguments))
-        elif isinstance(error, (ValueError, TypeError, OSError)):
-            _say(" ".join(str(error).split()))
-        else:
-            raise
-        return BAD_INPUT
+        return _tell(error, given)
     return code if isinstance(code, int) else 0
 
 
-def _received(error: Any, arguments: Sequence[str] | None) -> str:
+def _check_encodable(arguments: list[str]) -> None:
+    """See that any of them could be the name of a file; those of a shell always could.
+
+    Raises:
+        InvalidValueError: when one could not.
+    """
+    for argument in arguments:
+        try:
+            possible = b"\0" not in os.fsencode(argument)
+        except UnicodeEncodeError:
+            possible = False
+        if not possible:
+            raise InvalidValueError(f"arguments must be texts that a shell can pass on, got {argument!r}")
+
+
+def _tell(error: Exception, arguments: list[str]) -> int:
+    """Say what is wrong; the exit code."""
+    if hasattr(error, "format_message"):  # a mistake in the command line itself
+        say(" ".join(error.format_message().split()) + _received(error, arguments))
+    elif isinstance(error, (ArenaError, OSError)):
+        say(" ".join(str(error).split()))
+    else:
+        say_bug()
+        return BUG
+    return BAD_INPUT
+
+
+def _received(error: Any, arguments: list[str]) -> str:
     """The value of the option that is wrong, where the message does not tell it."""
-    given = list(sys.argv[1:] if arguments is None else arguments)
     options = getattr(getattr(error, "param", None), "opts", ())
-    for place, one in enumerate(given):
+    for place, one in enumerate(arguments):
         name, equals, value = one.partition("=")
         if name in options:
-            value = value if equals else "".join(given[place + 1 : place + 2])
+            value = value if equals else "".join(arguments[place + 1 : place + 2])
             return "" if repr(value) in error.format_message() else f", got {value!r}"
     return ""
 

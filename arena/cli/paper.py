@@ -17,6 +17,7 @@ from rich.text import Text
 from arena.cli.options import AsJson, File
 from arena.reproduction.verdicts import CENTRAL, NOT_TESTABLE, Claim
 from arena.results.results import Results, load
+from envs.foundation.errors import InvalidValueError
 
 _COLUMNS = ("section", "claim", "paper", "ours", "central", "percentile", "verdict")
 
@@ -39,7 +40,7 @@ def paper(
     from arena.walks.series import random_walk
 
     if walks < 2:
-        raise ValueError(f"--walks must be at least 2, got {walks}")
+        raise InvalidValueError(f"--walks must be at least 2, got {walks}")
     with load(file) as results:
         paper_tables(results)  # before the walks: is it all there?
         series = [random_walk(WALKS, seed=seed + number, n_jobs=jobs) for number in range(walks)]

@@ -10,6 +10,7 @@ import typer
 from arena.cli.options import By, File
 from arena.results.results import Results, load
 from envs.foundation.checks import choice, integer
+from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,7 +94,9 @@ def _of_one(name: str) -> Callable[..., "Figure"]:
 
         names = named or best_entrants(results, 1)
         if len(names) != 1:
-            raise ValueError(f"--entrant must be given once for a picture of one policy, got {len(names)}")
+            raise InvalidValueError(
+                f"--entrant must be given once for a picture of one policy, got {len(names)}"
+            )
         return _figure_of(getattr(figures_policy, name)(trained(results, names[0], replicate)))
 
     return draw
@@ -152,12 +155,12 @@ def _figure_of(drawn: "Axes | Figure") -> "Figure":
 
 def _all(named: list[str] | None) -> None:
     if named:
-        raise ValueError(f"--entrant must be left out of a picture of all entrants, got {named[0]!r}")
+        raise InvalidValueError(f"--entrant must be left out of a picture of all entrants, got {named[0]!r}")
 
 
 def _counted(board: "Leaderboard") -> "Leaderboard":
     if not board.replicates:
-        raise ValueError("there is no replicate that all entrants have run")
+        raise InvalidValueError("there is no replicate that all entrants have run")
     return board
 
 

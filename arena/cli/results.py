@@ -14,6 +14,7 @@ from rich.text import Text
 from arena.analysis.scores import SCORES
 from arena.cli.options import AsJson, By, Confidence, File
 from arena.results.results import Results, load
+from envs.foundation.errors import InvalidValueError
 
 REGRESSED = 1
 
@@ -27,7 +28,7 @@ def show(
 ) -> None:
     """Print the leaderboard of a results file; of the paper's tournament its tables, unless --by is given."""
     if as_json and as_csv:
-        raise ValueError("--json and --csv must not be given together")
+        raise InvalidValueError("--json and --csv must not be given together")
     with load(file) as results, _patience(by):
         print_results(results, by.value if by else None, confidence, as_json=as_json, as_csv=as_csv)
 
@@ -78,7 +79,7 @@ def compare(
 ) -> None:
     """Compare two entrants, or a file with a baseline: exit with 1 if an entrant got worse beyond chance."""
     if (baseline is None) == (a is None or b is None) or (baseline is not None and a is not None):
-        raise ValueError("compare must be given two entrants, or --baseline and none")
+        raise InvalidValueError("compare must be given two entrants, or --baseline and none")
     with load(file) as results, _patience(by):
         if baseline is None:
             _print_duel(results, str(a), str(b), by.value, confidence, as_json=as_json)
@@ -101,7 +102,9 @@ def _patience(by: By | None) -> AbstractContextManager[Any]:
 def _amount(text: str) -> tuple[float, bool]:
     """A number, or a share of the baseline."""
     if not re.fullmatch(r"\d+(\.\d*)?%?", text):
-        raise ValueError(f"--max-regression must be a number such as 5, or a share such as 2%, got {text!r}")
+        raise InvalidValueError(
+            f"--max-regression must be a number such as 5, or a share such as 2%, got {text!r}"
+        )
     return (float(text[:-1]) / 100.0, True) if text.endswith("%") else (float(text), False)
 
 

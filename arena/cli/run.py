@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from arena.cli.console import SOME_FAILED, _InterruptedError, _say
+from arena.cli.console import SOME_FAILED, InterruptedRunError, say
 from arena.cli.options import Plugins, load_plugins
 from arena.cli.progress import progress_bar
 from arena.cli.report import page_of
@@ -20,6 +20,7 @@ from arena.statistics.sequential import ADAPTIVE
 from arena.tournament.builtin import BUILT_IN
 from arena.tournament.configuration import load_tournament
 from arena.tournament.tournament import Tournament
+from envs.foundation.errors import InvalidValueError
 
 _BUILT_IN_TAKE = {"replicates", "seed", "reading"}
 
@@ -78,7 +79,7 @@ def run(
 ) -> None:
     """Run a tournament, keep its results and print its tables."""
     if jobs == 0:
-        raise ValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
+        raise InvalidValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
     load_plugins(plugin)
     given = {"replicates": replicates, "seed": seed, "reading": reading}
     given |= {"max_replicates": max_replicates, "confidence": confidence}
@@ -87,7 +88,7 @@ def run(
     try:
         results = _run(chosen, out, jobs, driver.value)
     except KeyboardInterrupt:
-        raise _InterruptedError(out) from None
+        raise InterruptedRunError(out) from None
     with results:
         print_results(results, as_json=as_json)
         if report:
@@ -134,7 +135,9 @@ def _tournament(name: str, changes: dict[str, Any]) -> Tournament:
         return replace(built, **{key: changes[key] for key in changes.keys() - _BUILT_IN_TAKE})
     if not name.endswith(".toml"):
         known = ", ".join(BUILT_IN)
-        raise ValueError(f"tournament must be one of {known}, or a file that ends in .toml, got {name!r}")
+        raise InvalidValueError(
+            f"tournament must be one of {known}, or a file that ends in .toml, got {name!r}"
+        )
     return load_tournament(name, **changes)
 
 
@@ -148,7 +151,7 @@ def _write_page(results: Results, page: Path) -> None:
 
     write_report(results, page)
     if sys.stderr.isatty():
-        _say(f"the page is {page}")
+        say(f"the page is {page}")
 
 
 def add_commands(app: typer.Typer) -> None:

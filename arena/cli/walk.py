@@ -19,6 +19,7 @@ from arena.tournament.hills import find_hill
 from arena.walks.distributions import BOOTSTRAPS
 from arena.walks.series import InterruptedWalk, RandomWalk, random_walk
 from envs import Hill, Integrator
+from envs.foundation.errors import InvalidValueError
 
 INTERRUPTED = 130
 _PICTURES = (".png", ".svg", ".pdf")
@@ -48,7 +49,7 @@ def walk(
 ) -> None:
     """Walk at random to the goal: bounds of the state, lengths of episodes, and their distribution."""
     if jobs == 0:
-        raise ValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
+        raise InvalidValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
     _check_files(out, figure)
     chosen = find_hill(hill)
     walks, stopped = _walks(_hills(chosen, integrator), episodes, seed, jobs, max_steps)
@@ -76,10 +77,10 @@ def walk(
 def _check_files(out: Path | None, figure: Path | None) -> None:
     """Before the walks, so that none are in vain."""
     if figure and figure.suffix not in _PICTURES:
-        raise ValueError(f"--figure must end in one of {', '.join(_PICTURES)}, got {str(figure)!r}")
+        raise InvalidValueError(f"--figure must end in one of {', '.join(_PICTURES)}, got {str(figure)!r}")
     for option, file in (("--out", out), ("--figure", figure)):
         if file and (file.is_dir() or not file.parent.is_dir()):
-            raise ValueError(f"{option} must be a file in a folder that exists, got {str(file)!r}")
+            raise InvalidValueError(f"{option} must be a file in a folder that exists, got {str(file)!r}")
 
 
 def _hills(hill: Hill, integrator: str | None) -> list[Hill]:

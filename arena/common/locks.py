@@ -4,8 +4,10 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from envs.foundation.errors import InvalidValueError
 
-class LockedError(ValueError):
+
+class LockedError(InvalidValueError):
     """Another process is writing the file."""
 
 

@@ -15,6 +15,7 @@ from arena.execution.loops import listener
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome, complete, failed
 from envs.foundation.checks import integer
+from envs.foundation.errors import InvalidValueError
 from envs.foundation.streams import stream
 
 NAME = "pettingzoo"
@@ -102,7 +103,7 @@ class _Car:
     def _checked(self, action: Any) -> int:
         found = integer("action", action, 0)
         if found >= self.n_actions:
-            raise ValueError(f"action must be less than {self.n_actions}, got {found}")
+            raise InvalidValueError(f"action must be less than {self.n_actions}, got {found}")
         return found
 
 

@@ -14,6 +14,7 @@ from arena.execution.checkpoint import savable
 from arena.execution.pool import Task
 from arena.tournament.conditions import Conditions, Run
 from envs.compilation.kernels import CompilationError
+from envs.foundation.errors import InvalidValueError
 
 _CARS_TOGETHER = 16  # a group of cars is kept when all of it has finished
 _log = logging.getLogger("arena")
@@ -54,7 +55,7 @@ def _interpreted(conditions: Conditions, runs: list[Run], n_jobs: int, driver: s
     }
     for agent, (name, reason) in agents.items():
         if driver == "compiled":
-            raise ValueError(f"entrant {name!r} cannot be compiled: {reason}")
+            raise InvalidValueError(f"entrant {name!r} cannot be compiled: {reason}")
         _log.warning("%s runs interpreted: %s", agent.__name__, reason)
     return set(reasons)
 

@@ -18,6 +18,7 @@ from arena.execution import watchdog as claims
 from arena.execution.watchdog import Limits
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome, failed
+from envs.foundation.errors import InvalidValueError
 
 Work = Callable[[str, Conditions, list[Run]], list[Outcome]]
 Task = tuple[str, Conditions, list[Run]]
@@ -35,7 +36,7 @@ def check_enforceable(limits: Limits) -> None:
 
     backend, _ = get_active_backend()
     if limits and getattr(backend, "supports_sharedmem", False):
-        raise ValueError(
+        raise InvalidValueError(
             "time_limit and memory_limit must be enforced in worker processes, got the joblib backend "
             f"{type(backend).__name__}, which has none"
         )

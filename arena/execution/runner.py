@@ -19,6 +19,7 @@ from arena.results.store import Store
 from arena.tournament.outcome import failed
 from arena.tournament.tournament import Tournament
 from envs.foundation.checks import choice, instance, integer, number
+from envs.foundation.errors import InvalidValueError
 
 DRIVERS = ("auto", "compiled", "pettingzoo")
 
@@ -57,7 +58,7 @@ def run(
     instance("tournament", tournament, Tournament)
     choice("driver", driver, DRIVERS)
     if integer("n_jobs", n_jobs) == 0:
-        raise ValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
+        raise InvalidValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
     seconds = number("checkpoint_seconds", checkpoint_seconds, 0)
     limits = Limits(tournament.time_limit, tournament.memory_limit)
     check_enforceable(limits)

@@ -16,6 +16,7 @@ from arena.tournament.configuration import from_dict
 from arena.tournament.outcome import Outcome
 from envs.compilation.kernels import CompilationError
 from envs.foundation.checks import integer
+from envs.foundation.errors import InvalidValueError
 
 
 def verify(results: Results, runs: int = 4) -> Iterator[str]:
@@ -36,12 +37,12 @@ def verify(results: Results, runs: int = 4) -> Iterator[str]:
 
     stored = {(run["entrant"], run["replicate"]): run for run in results.runs if run["status"] == "finished"}
     if not stored:
-        raise ValueError(f"{results.path} has no finished run that could be verified")
+        raise InvalidValueError(f"{results.path} has no finished run that could be verified")
     finished = [one for one in results.config["entrants"] if any(one["name"] == name for name, _ in stored)]
     tournament = from_dict({**results.config, "entrants": finished})
     for entrant in tournament.entrants:
         if entrant.unavailable:
-            raise ValueError(entrant.unavailable)
+            raise InvalidValueError(entrant.unavailable)
     sample = random.Random(0).sample(sorted(stored), min(integer("runs", runs, 1), len(stored)))  # noqa: S311
     chosen = [run for run in tournament.runs if (run.entrant.name, run.replicate) in sample]
     for backend, n_jobs, other in (("loky", 1, True), ("threading", 2, False)):

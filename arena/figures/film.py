@@ -17,6 +17,7 @@ from agents.optimal.driver import Optimal
 from arena.results.results import Results, conditions_of, trained
 from envs import Hill
 from envs.foundation.checks import choice, number
+from envs.foundation.errors import InvalidValueError
 from envs.rendering import FRAMES_PER_SECOND, SIZE
 
 Frame = NDArray[np.uint8]
@@ -73,7 +74,9 @@ def race(results: Results, entrants: Sequence[str], start: float = -0.5, replica
             the goal.
     """
     if len(set(entrants)) < len(entrants) or not entrants:
-        raise ValueError(f"entrants must be one or more that differ, got {', '.join(entrants) or 'none'}")
+        raise InvalidValueError(
+            f"entrants must be one or more that differ, got {', '.join(entrants) or 'none'}"
+        )
     conditions = conditions_of(results)
     hill, limit = conditions.hill, conditions.evaluation.max_steps
     start = number("start", start, hill.min_position, hill.goal_position)
@@ -81,7 +84,7 @@ def race(results: Results, entrants: Sequence[str], start: float = -0.5, replica
     ghost = GHOST if GHOST not in agents else None
     try:
         agents |= {ghost: Optimal.create(hill)} if ghost else {}
-    except ValueError:  # a hill that this driver is not for
+    except InvalidValueError:  # a hill that this driver is not for
         ghost = None
     actions: dict[str, list[int]] = {name: [] for name in agents}
     reached = set()
@@ -114,7 +117,7 @@ def show(race: Race) -> None:
         for _ in _rendered(race, race.actions, "human"):
             pass
     except (RuntimeError, DependencyNotInstalled) as error:
-        raise ValueError(f"{error}; --out race.gif needs no window") from error
+        raise InvalidValueError(f"{error}; --out race.gif needs no window") from error
 
 
 def save_race(race: Race, path: Path) -> None:
@@ -182,10 +185,12 @@ def _page(race: Race, animation: bytes) -> str:
 def _film(pictures: Iterable[Frame], path: Path) -> None:
     program = shutil.which("ffmpeg")
     if program is None:
-        raise ValueError("--out must be .gif or .html: for .mp4 ffmpeg must be on the path, and it is not")
+        raise InvalidValueError(
+            "--out must be .gif or .html: for .mp4 ffmpeg must be on the path, and it is not"
+        )
     form = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{SIZE[0]}x{SIZE[1]}", "-r", str(FRAMES_PER_SECOND)]
     command = [program, "-y", "-v", "error", *form, "-i", "-", "-pix_fmt", "yuv420p", str(path)]
     raw = b"".join(picture.tobytes() for picture in pictures)
     done = subprocess.run(command, input=raw, capture_output=True, check=False)  # noqa: S603 (our own)
     if done.returncode:
-        raise ValueError(f"ffmpeg cannot write {path}: {done.stderr.decode().strip()}")
+        raise InvalidValueError(f"ffmpeg cannot write {path}: {done.stderr.decode().strip()}")

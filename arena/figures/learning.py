@@ -8,6 +8,7 @@ import numpy as np
 from arena.analysis.curves import WINDOW
 from arena.figures.style import DASHES, LINES, make_axes
 from arena.results.results import Results
+from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +30,9 @@ def draw_learning(
         ValueError: when there are too many entrants, or one has no curve.
     """
     if len(entrants) > len(LINES):
-        raise ValueError(f"entrants must be at most {len(LINES)} to be told apart, got {len(entrants)}")
+        raise InvalidValueError(
+            f"entrants must be at most {len(LINES)} to be told apart, got {len(entrants)}"
+        )
     curves = {name: reward_curves(results, name, window) for name in entrants}
     axes = make_axes(axes)
     for (name, curve), color, dashes in zip(curves.items(), LINES, DASHES):

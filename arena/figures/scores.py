@@ -11,6 +11,7 @@ from arena.analysis.standings import Leaderboard
 from arena.figures.style import BETTER, BLUE, LINES, ORANGE, SHARE, make_axes
 from arena.results.results import Results, run_arrays
 from arena.statistics.permutation import at_most
+from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -110,7 +111,9 @@ def draw_regret(
         ValueError: when there are too many entrants, or one has no such run.
     """
     if len(entrants) > len(LINES):
-        raise ValueError(f"entrants must be at most {len(LINES)} to be told apart, got {len(entrants)}")
+        raise InvalidValueError(
+            f"entrants must be at most {len(LINES)} to be told apart, got {len(entrants)}"
+        )
     axes = make_axes(axes, 8.0)
     x, least = np.asarray(starts, float), np.asarray(fewest, float)
     order = np.argsort(x)

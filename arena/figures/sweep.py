@@ -12,6 +12,7 @@ from arena.analysis.scores import SCORES, Scores
 from arena.figures.scores import cell_edges
 from arena.figures.style import AMOUNT
 from arena.results.results import Results
+from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,7 +44,7 @@ def find_sweep(results: Results) -> Sweep:
             agent = json.loads(key)[0]
             swept[f"{agent}, as {next(iter(grids.values()))}" if agent in swept else agent] = grids
     if not swept:
-        raise ValueError("a sweep must have entrants that differ in nothing but their grids, got none")
+        raise InvalidValueError("a sweep must have entrants that differ in nothing but their grids, got none")
     return swept
 
 

@@ -15,9 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from agents.registry import forget, register
+from envs.foundation.errors import ArenaError, InvalidValueError
 
 
-class PluginError(ValueError):
+class PluginError(InvalidValueError):
     """A plugin that cannot be used; the message is one sentence that names it.
 
     Attributes:
@@ -112,7 +113,7 @@ def _read(path: Path) -> PluginSource:
         text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except FileNotFoundError:
         raise PluginError(f"there is no plugin file {path}") from None
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:  # undecodable, or a path with a null character
         raise PluginError(f"plugin {path} cannot be read: {error}") from error
     stem = re.sub(r"\W", "_", path.stem)
     digest = hashlib.sha256(text.encode()).hexdigest()[:12]
@@ -140,7 +141,7 @@ def _register(path: Path, source: PluginSource, origin: str) -> dict[str, type[A
     for name, cls in found.items():
         try:
             register(name, cls, origin)
-        except (TypeError, ValueError) as error:
+        except ArenaError as error:
             forget(origin)  # all of it or nothing
             raise PluginError(f"plugin {path}: {error}") from error
     return found

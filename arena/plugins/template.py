@@ -7,6 +7,7 @@ from pathlib import Path
 
 from agents.registry import all_agents
 from arena.plugins.loading import kebab
+from envs.foundation.errors import InvalidValueError
 
 AGENT = '''"""{title}: say here where the algorithm comes from."""
 
@@ -90,22 +91,24 @@ def write(name: str, folder: Path) -> tuple[Path, Path]:
         ValueError: when the name is bad or taken, or a file is there already.
     """
     if not re.fullmatch("[a-z][a-z0-9]*(-[a-z0-9]+)*", name):
-        raise ValueError(f"NAME must be lower-case words joined by dashes, such as my-agent, got {name!r}")
+        raise InvalidValueError(
+            f"NAME must be lower-case words joined by dashes, such as my-agent, got {name!r}"
+        )
     words = name.split("-")
     class_name, module = "".join(map(str.capitalize, words)), "_".join(words)
     called = kebab(class_name)
     if called != name:  # single letters and numbers run together
-        raise ValueError(
+        raise InvalidValueError(
             f"NAME must be what its class is called, which for {class_name} is {called}, got {name!r}"
         )
     files = folder / f"{module}.py", folder / f"test_{module}.py"
     for path in files:
         if path.exists():
-            raise ValueError(f"{path} is there already")
+            raise InvalidValueError(f"{path} is there already")
     if name in all_agents()[0] or find_spec(module):
-        raise ValueError(f"NAME must not be that of another agent or of a Python module, got {name!r}")
+        raise InvalidValueError(f"NAME must not be that of another agent or of a Python module, got {name!r}")
     if keyword.iskeyword(class_name) or re.search(rf"import .*\b{class_name}\b", AGENT):
-        raise ValueError(f"NAME must not be that of a class which the agent needs, got {name!r}")
+        raise InvalidValueError(f"NAME must not be that of a class which the agent needs, got {name!r}")
     parts = {"title": " ".join(words).capitalize(), "class_name": class_name, "module": module}
     folder.mkdir(parents=True, exist_ok=True)
     for path, text in zip(files, (AGENT, TEST), strict=True):

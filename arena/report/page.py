@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from arena.reproduction.verdicts import Claim
 from arena.results.digests import digest
 from arena.results.results import Results
 from arena.tournament.builtin import BUILT_IN
+from envs.foundation.errors import ArenaError, InvalidValueError
 
 
 def write_report(results: Results, path: Path, by: str = "steps", confidence: float = 0.95) -> None:
@@ -119,7 +121,7 @@ def _claims(results: Results) -> list[Claim]:
     """Verdicts on what the results can decide; none if they are not those of the whole paper."""
     try:
         return results_claims(results)
-    except ValueError:
+    except InvalidValueError:
         return []
 
 
@@ -133,11 +135,9 @@ def _failures(results: Results) -> Iterator[dict[str, Any]]:
 def _command(config: dict[str, Any]) -> str:
     """What runs the tournament again."""
     name, given = config["name"], {key: config[key] for key in ("replicates", "seed", "reading")}
-    try:
-        if BUILT_IN[name](**given).to_dict() == config:
+    with suppress(ArenaError):  # another tournament that is called so
+        if name in BUILT_IN and BUILT_IN[name](**given).to_dict() == config:
             return " ".join([f"arena run {name}", *(f"--{key} {value}" for key, value in given.items())])
-    except (KeyError, TypeError, ValueError):
-        pass
     return (
         "import json, arena\n"
         "from arena.tournament import from_dict\n\n"

@@ -14,6 +14,7 @@ from arena.analysis.standings import Leaderboard
 from arena.results.results import Results, conditions_of, trained
 from arena.results.trained import Trained, UnknownPolicyError, drive
 from arena.statistics.permutation import at_most
+from envs.foundation.errors import InvalidValueError
 
 MOST_DRAWN = 100
 """Entrants with curves, maps and drives: the first ones by place. The leaderboard has all."""
@@ -41,7 +42,7 @@ def page_data(results: Results, scores: Scores, board: Leaderboard, replicate: i
     for number, name in enumerate(names[:MOST_DRAWN]):
         try:
             told = _policy(trained(results, name, replicate), starts)
-        except ValueError as error:  # not run yet, failed, or not to be made again
+        except InvalidValueError as error:  # not run yet, failed, or not to be made again
             told = {"map": None, "drives": None}
             untold.append((name, str(error)))
         drawn.append({"entrant": number, "curve": _curve(results, name, at), **told})
@@ -78,7 +79,7 @@ def _sampled(episodes: int) -> list[int]:
 def _curve(results: Results, name: str, at: Sequence[int]) -> dict[str, Any] | None:
     try:
         curves = reward_curves(results, name)[:, np.array(at) - WINDOW]
-    except ValueError:  # no finished run, or too few episodes
+    except InvalidValueError:  # no finished run, or too few episodes
         return None
     return {
         kind: _whole(rewards)
@@ -114,7 +115,7 @@ def _ghost(results: Results, starts: Sequence[float]) -> list[Any] | None:
     conditions = conditions_of(results)
     try:
         optimal = Optimal.create(conditions.hill)
-    except ValueError:
+    except InvalidValueError:
         return None
     limit = conditions.evaluation.max_steps
     paths = [drive(conditions.hill, optimal, start, limit) for start in starts]

@@ -10,6 +10,7 @@ from arena.analysis.policy_map import map_of, policy
 from arena.figures.style import ACTION_NAMES, ACTIONS
 from arena.results.results import Results, best_entrants, trained
 from arena.results.trained import Trained
+from envs.foundation.errors import InvalidValueError
 
 LEVELS = "▁▂▃▄▅▆▇█"
 _BEST = 10  # entrants with a sparkline
@@ -34,7 +35,7 @@ def pictures(results: Results) -> RenderableType:
     try:
         names = best_entrants(results, _BEST)
         curves = {name: reward_curves(results, name).mean(axis=0) for name in names}
-    except ValueError:  # no run has finished, or there are too few episodes for a curve
+    except InvalidValueError:  # no run has finished, or there are too few episodes for a curve
         return Group()
     low, high = (float(end(end(curve) for curve in curves.values())) for end in (min, max))
     ends = -np.log(-low), -np.log(-high)
@@ -47,7 +48,7 @@ def pictures(results: Results) -> RenderableType:
 def _policy(results: Results, name: str) -> list[Text]:
     try:
         return blocks(trained(results, name))
-    except ValueError:  # one that cannot be told
+    except InvalidValueError:  # one that cannot be told
         return []
 
 

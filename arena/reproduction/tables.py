@@ -11,6 +11,7 @@ from arena.common.plain import without_nan
 from arena.reproduction.published import MINIMUM_ACCURACY, Key, published
 from arena.results.results import Results
 from arena.statistics.intervals import correlation, mean_interval
+from envs.foundation.errors import InvalidValueError
 
 
 @dataclass(frozen=True)
@@ -108,9 +109,11 @@ def paper_tables(results: Results) -> dict[str, Floats]:
     finished = [run for run in results.runs if run["status"] == "finished"] if named else []
     runs = {(_key(run), run["replicate"]): run for run in finished}
     if not runs or runs.keys() != {(key, number) for key in cells for number in range(count)}:
-        raise ValueError(f"results must be those of the tournament paper, all runs finished, got {results!r}")
+        raise InvalidValueError(
+            f"results must be those of the tournament paper, all runs finished, got {results!r}"
+        )
     if count < 2:
-        raise ValueError("results must have 2 replicates or more, got 1")
+        raise InvalidValueError("results must have 2 replicates or more, got 1")
     found = {score: np.full((len(cells), count), math.nan) for score in SCORES}
     for (key, replicate), run in runs.items():
         for score in SCORES:

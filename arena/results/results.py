@@ -9,6 +9,7 @@ from arena.common.html import represent
 from arena.common.npz import Arrays
 from arena.results.store import Store
 from arena.statistics.sequential import ADAPTIVE
+from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -218,7 +219,7 @@ def run_arrays(results: Results, entrant: str, replicate: int) -> Arrays:
     try:
         arrays = results.arrays(entrant, integer("replicate", replicate, 0))
     except KeyError:
-        raise ValueError(f"replicate must be one that {entrant!r} has run, got {replicate}") from None
+        raise InvalidValueError(f"replicate must be one that {entrant!r} has run, got {replicate}") from None
     if not arrays:
         raise UnknownPolicyError(f"replicate {replicate} of {entrant!r} failed: there is nothing to draw")
     return arrays
@@ -244,7 +245,7 @@ def best_entrants(results: Results, count: int) -> list[str]:
     frame = results.frame()
     means = frame[frame["status"] == "finished"].groupby("entrant", sort=False)["steps"].mean()
     if means.empty:
-        raise ValueError("no run has finished: there is nothing to draw")
+        raise InvalidValueError("no run has finished: there is nothing to draw")
     return [str(name) for name in means.nsmallest(count).index]
 
 

@@ -1,12 +1,13 @@
-"""What a results file must hold, checked when it is opened."""
+"""What a results file must hold, checked when it is read: nothing else looks for damage."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from arena.statistics.sequential import ADAPTIVE, MOST
 
 _NUMBER = (int, float, type(None))
-_MOST = 1e15  # more than any score or count
-_COLUMNS: dict[str, Any] = {
+_LARGEST = 1e15  # more than any score or count
+COLUMNS: dict[str, Any] = {
     "entrant": str,
     "replicate": int,
     "driver": str,
@@ -19,13 +20,30 @@ _COLUMNS: dict[str, Any] = {
 }
 
 
-def _sound(config: Any) -> bool:
+def row_problem(row: dict[str, Any], entrants: Iterable[str]) -> str:
+    """What is wrong with a row of the table ``runs``; empty if nothing is.
+
+    Args:
+        row: by the names of ``COLUMNS``.
+        entrants: the names that there may be.
+    """
+    for name, kinds in COLUMNS.items():
+        value = row[name]
+        out_of_range = isinstance(value, (int, float)) and not 0 <= value <= _LARGEST
+        if out_of_range or not isinstance(value, kinds):
+            return f"{name} of a run is {value!r}"
+    if row["status"] not in ("finished", "failed"):
+        return f"status of a run is {row['status']!r}"
+    return "" if row["entrant"] in entrants else f"there is a run of {row['entrant']!r}, who is no entrant"
+
+
+def is_valid_config(config: Any) -> bool:
     """Whether a tournament that was read has what the rest of the program looks for."""
     kinds: dict[str, Any] = {"name": str, "reading": str, "seed": int, "replicates": (int, str)}
-    kinds["entrants"] = list
+    kinds |= {"hill": dict, "entrants": list}
     if not isinstance(config, dict) or not all(isinstance(config.get(k), v) for k, v in kinds.items()):
         return False
-    if not _sound_numbers(config):
+    if not _are_valid_numbers(config):
         return False
     parts = {"name": str, "agent": str, "parameters": dict}
     if not all(
@@ -42,12 +60,14 @@ def _sound(config: Any) -> bool:
     return all(name.isprintable() for name in names)
 
 
-def _sound_numbers(config: dict[str, Any]) -> bool:
+def _are_valid_numbers(config: dict[str, Any]) -> bool:
     """Whether the lengths of a tournament are such as scores can be made of."""
     for part in (config.get("training"), config.get("evaluation")):
         lengths = [part.get(name) for name in ("episodes", "max_steps")] if isinstance(part, dict) else [None]
-        if not all(isinstance(length, int) and 1 <= length <= _MOST for length in lengths):
+        if not all(isinstance(length, int) and 1 <= length <= _LARGEST for length in lengths):
             return False
+    if not 0 <= config["seed"] <= _LARGEST:
+        return False
     if isinstance(config["replicates"], int):
         return True
     most, leaders, confidence = (config.get(k) for k in ("max_replicates", "leaders", "confidence"))

@@ -7,10 +7,9 @@ Tables (also in ``docs/results.md``): ``tournament`` (key, value), ``runs`` (one
 import json
 import sqlite3
 import urllib.parse
-import zipfile
-import zlib
+import weakref
 from collections.abc import Iterator, Mapping
-from contextlib import closing, contextmanager, nullcontext
+from contextlib import closing, contextmanager
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -21,8 +20,9 @@ from arena.common.locks import LockedError, lock_file, unlock
 from arena.common.npz import Arrays, unpack
 from arena.results.continuation import as_read, continued, difference
 from arena.results.provenance import versions
-from arena.results.schema import _COLUMNS, _MOST, _sound
+from arena.results.schema import COLUMNS, is_valid_config, row_problem
 from arena.tournament.outcome import Outcome
+from envs.foundation.errors import InvalidValueError
 
 APPLICATION_ID = 0x4D434152  # "MCAR"
 SCHEMA_VERSION = 1
@@ -41,22 +41,37 @@ PRAGMA user_version = {SCHEMA_VERSION};
 """
 
 
-class ResultsError(ValueError):
+class ResultsError(InvalidValueError):
     """A results file cannot be used; the message is one sentence that names it."""
 
 
 class Store:
     """An open results file, or a temporary one without a name.
 
-    Use ``Store.create``, ``Store.resume`` or ``Store.read``.
+    Use ``Store.create``, ``Store.resume`` or ``Store.read``. Whoever opens it closes it; one that is dropped
+    is closed by the thread that collects it.
+
+    Attributes:
+        path: of the file; None for a temporary one.
+        config: the tournament, as ``Tournament.to_dict`` describes it.
+        versions: of Python and the packages when the file was made.
+        sources: digests of the agents' code, see ``source_digests``.
     """
 
-    def __init__(
-        self, connection: sqlite3.Connection, path: Path | None, lock: FileLock | None = None
-    ) -> None:
+    config: dict[str, Any]
+    versions: dict[str, str]
+    sources: dict[str, str]
+
+    def __init__(self, connection: sqlite3.Connection, path: Path | None) -> None:
         self.path = path
         self._connection = connection
-        self._lock = lock
+        self._lock: FileLock | None = None
+        self._closing = weakref.finalize(self, connection.close)
+        try:
+            self._load()
+        except BaseException:
+            self._closing()
+            raise
 
     @classmethod
     def create(
@@ -64,33 +79,28 @@ class Store:
     ) -> "Store":
         """A new file at ``path`` for the tournament ``config``; a temporary one for None.
 
-        ``sources`` are the digests of the agents' code, see ``source_digests``.
-
         Raises:
             ResultsError: when the file cannot be made.
         """
-        told = {"config": config, "versions": versions(), "sources": dict(sources)}
-        rows = [(key, json.dumps(value)) for key, value in told.items()]
+        metadata = {"config": config, "versions": versions(), "sources": dict(sources)}
+        rows = [(key, json.dumps(value)) for key, value in metadata.items()]
+        if path is None:
+            connection = _connect(":memory:")
+            _fill(connection, rows)
+            return cls(connection, None)
         lock = None
         try:
-            if path is not None:
-                path.parent.mkdir(parents=True, exist_ok=True)
-                lock = lock_file(path)
-                path.with_name(f"{path.name}.new").unlink(missing_ok=True)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            lock = lock_file(path)
             # Under another name until it is whole: a process may be killed at any moment.
-            new = path.with_name(f"{path.name}.new") if path else ""
-            opened = sqlite3.connect(new, check_same_thread=False)  # see ``_open``
-            with closing(opened) if path else nullcontext(opened) as connection:
-                connection.executescript(_SCHEMA)
-                connection.executemany("INSERT INTO tournament VALUES (?, ?)", rows)
-                connection.commit()
-            if path is not None:
-                Path(new).replace(path)
-        except (OSError, sqlite3.Error, LockedError) as error:
+            draft = path.with_name(f"{path.name}.new")
+            draft.unlink(missing_ok=True)
+            with closing(sqlite3.connect(draft)) as connection:
+                _fill(connection, rows)
+            draft.replace(path)
+        except (OSError, ValueError, sqlite3.Error) as error:  # a path with a null character is a ValueError
             unlock(lock)
-            raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
-        if path is None:
-            return cls(connection, None)
+            raise _unwritable(path, error) from error
         store = cls._open(path, "rw")
         store._lock = lock  # noqa: SLF001 (its own)
         return store
@@ -108,11 +118,10 @@ class Store:
         store = cls._open(path, "rw")
         try:
             store._lock = lock_file(path)  # noqa: SLF001 (its own)
+            store._continue(as_read(config), sources)  # noqa: SLF001 (its own)
         except (LockedError, OSError) as error:
             store.close()
-            raise ResultsError(f"cannot write the results file {path}: {_words(error)}") from error
-        try:
-            store._continue(as_read(config), sources)  # noqa: SLF001 (its own)
+            raise _unwritable(path, error) from error
         except BaseException:
             store.close()
             raise
@@ -132,88 +141,29 @@ class Store:
         if not path.is_file():
             raise ResultsError(f"there is no results file {path}")
         uri = f"file:{urllib.parse.quote(str(path.absolute()))}?mode={mode}"
-        store = None
         try:
-            # Results that are dropped are closed by whichever thread collects them.
-            connection = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
-            store = cls(connection, path)
-            store._check()
-        except (sqlite3.Error, ResultsError) as error:
-            if store:
-                store.close()
-            if isinstance(error, ResultsError):
-                raise
-            raise ResultsError(f"{path} is not a results file of the arena: {_words(error)}") from error
-        return store
+            return cls(_connect(uri), path)
+        except sqlite3.Error as error:
+            raise ResultsError(f"{path} is not a results file of the arena: {first_line(error)}") from error
 
     def _continue(self, config: dict[str, Any], sources: Mapping[str, str]) -> None:
         """See that this is the same tournament, and keep what was not known of agents until now."""
-        before, code = self.config, self._told("sources")
-        differs = difference(before, config)
+        differs = difference(self.config, config)
         if differs:
             raise ResultsError(
                 f"{self.path} holds another tournament ({differs}); name another file or remove this one"
             )
-        for agent, digest in code.items():
+        for agent, digest in self.sources.items():
             if sources.get(agent, digest) != digest:
                 raise ResultsError(
                     f"{self.path} holds runs of other code of {agent!r}; name another file or remove this one"
                 )
-        told = {"config": continued(before, config), "sources": {**code, **sources}}
-        if told != {"config": before, "sources": code}:
-            rows = [(json.dumps(value), key) for key, value in told.items()]
-            with self._writing():
+        metadata = {"config": continued(self.config, config), "sources": {**self.sources, **sources}}
+        if metadata != {"config": self.config, "sources": self.sources}:
+            rows = [(json.dumps(value), key) for key, value in metadata.items()]
+            with self._transaction():
                 self._connection.executemany("UPDATE tournament SET value = ? WHERE key = ?", rows)
-
-    def _check(self) -> None:
-        (application,) = self._connection.execute("PRAGMA application_id").fetchone()
-        (version,) = self._connection.execute("PRAGMA user_version").fetchone()
-        if application != APPLICATION_ID:
-            raise ResultsError(f"{self.path} is not a results file of the arena")
-        if version > SCHEMA_VERSION:
-            raise ResultsError(
-                f"{self.path} was written by a newer arena (schema {version}, known is {SCHEMA_VERSION})"
-            )
-        with self._reading():
-            told = self.versions, self._told("sources")
-            if not _sound(self.config) or not all(isinstance(one, dict) for one in told):
-                raise TypeError("its tournament is incomplete")
-
-    @contextmanager
-    def _reading(self) -> Iterator[None]:
-        """Tell whatever comes of a damaged file in one sentence."""
-        try:
-            yield
-        except ResultsError:
-            raise
-        except (sqlite3.Error, ValueError, TypeError, LookupError, OSError, EOFError, MemoryError) as error:
-            raise ResultsError(f"{self.path} is damaged: {_words(error)}") from error
-        except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError) as error:
-            raise ResultsError(
-                f"{self.path} is damaged: its arrays cannot be read ({_words(error)})"
-            ) from error
-
-    @contextmanager
-    def _writing(self) -> Iterator[None]:
-        """One transaction."""
-        try:
-            with self._connection:
-                self._connection.execute("BEGIN IMMEDIATE")
-                yield
-        except sqlite3.Error as error:
-            raise ResultsError(f"cannot write the results file {self.path}: {_words(error)}") from error
-
-    @property
-    def config(self) -> dict[str, Any]:
-        """The tournament, as ``Tournament.to_dict`` told it."""
-        found: dict[str, Any] = self._told("config")
-        return found
-
-    @property
-    def versions(self) -> dict[str, str]:
-        """Of Python and the packages when the file was made."""
-        found: dict[str, str] = self._told("versions")
-        return found
+            self.config, self.sources = metadata["config"], metadata["sources"]
 
     def add(self, outcome: Outcome) -> None:
         """Keep a run, for good when this returns.
@@ -221,14 +171,21 @@ class Store:
         Raises:
             ResultsError: when the disk is full or gone.
         """
-        key = (outcome.entrant, outcome.replicate)
-        scores = (outcome.driver, outcome.status, outcome.accuracy, outcome.mean_length)
-        costs = (outcome.iterations, outcome.seconds, outcome.error)
-        with self._writing():
+        row = (
+            *outcome.key,
+            outcome.driver,
+            str(outcome.status),
+            outcome.accuracy,
+            outcome.mean_length,
+            outcome.iterations,
+            outcome.seconds,
+            outcome.error,
+        )
+        with self._transaction():
+            self._connection.execute("INSERT OR REPLACE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
             self._connection.execute(
-                "INSERT OR REPLACE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", key + scores + costs
+                "INSERT OR REPLACE INTO arrays VALUES (?, ?, ?)", (*outcome.key, outcome.arrays)
             )
-            self._connection.execute("INSERT OR REPLACE INTO arrays VALUES (?, ?, ?)", (*key, outcome.arrays))
 
     def finished(self) -> set[tuple[str, int]]:
         """Entrant and replicate of the runs that need not be repeated."""
@@ -240,21 +197,18 @@ class Store:
         Raises:
             ResultsError: when the file is damaged.
         """
+        order = {entrant["name"]: place for place, entrant in enumerate(self.config["entrants"])}
         with self._reading():
-            order = {entrant["name"]: place for place, entrant in enumerate(self.config["entrants"])}
-            cursor = self._connection.execute(f"SELECT {', '.join(_COLUMNS)} FROM runs")  # noqa: S608
-            rows = [dict(zip(_COLUMNS, row, strict=True)) for row in cursor]
-            for row in rows:
-                for name, kinds in _COLUMNS.items():
-                    absurd = isinstance(row[name], (int, float)) and not 0 <= row[name] <= _MOST
-                    if absurd or not isinstance(row[name], kinds):
-                        raise TypeError(f"{name} of a run is {row[name]!r}")
+            cursor = self._connection.execute(f"SELECT {', '.join(COLUMNS)} FROM runs")  # noqa: S608
+            rows = [dict(zip(COLUMNS, row, strict=True)) for row in cursor]
             orphans = (
                 "SELECT count(*) FROM runs LEFT JOIN arrays USING (entrant, replicate) WHERE npz IS NULL"
             )
-            if self._connection.execute(orphans).fetchone()[0]:
-                raise LookupError("a run lacks its arrays")
-            return sorted(rows, key=lambda row: (order[row["entrant"]], row["replicate"]))
+            (orphaned,) = self._connection.execute(orphans).fetchone()
+        problem = next(filter(None, (row_problem(row, order) for row in rows)), "")
+        if problem or orphaned:
+            raise self._damaged(problem or "a run lacks its arrays")
+        return sorted(rows, key=lambda row: (order[row["entrant"]], row["replicate"]))
 
     def arrays(self, entrant: str, replicate: int) -> Arrays:
         """The arrays of a run by name.
@@ -265,14 +219,17 @@ class Store:
         """
         query = "SELECT npz FROM arrays WHERE entrant = ? AND replicate = ?"
         with self._reading():
-            found = self._connection.execute(query, (entrant, replicate)).fetchone()
-            if found:
-                return unpack(found[0]) if found[0] else {}
-        raise KeyError(f"no run {replicate} of {entrant!r}")
+            row = self._connection.execute(query, (entrant, replicate)).fetchone()
+        if row is None:
+            raise KeyError(f"no run {replicate} of {entrant!r}")
+        try:
+            return unpack(row[0]) if row[0] else {}
+        except Exception as error:  # of any kind: zip, zlib and numpy each have their own
+            raise self._damaged(f"its arrays cannot be read ({first_line(error)})") from error
 
     def close(self) -> None:
         """Close the file; a temporary one is gone."""
-        self._connection.close()
+        self._closing()
         self.release()
 
     def __del__(self) -> None:
@@ -283,11 +240,66 @@ class Store:
         unlock(self._lock)
         self._lock = None
 
-    def _told(self, key: str) -> Any:
+    def _load(self) -> None:
+        """Read and check all but the runs; errors of SQLite mean that it is no such file."""
+        (application,) = self._connection.execute("PRAGMA application_id").fetchone()
+        (version,) = self._connection.execute("PRAGMA user_version").fetchone()
+        if application != APPLICATION_ID:
+            raise ResultsError(f"{self.path} is not a results file of the arena")
+        if version > SCHEMA_VERSION:
+            raise ResultsError(
+                f"{self.path} was written by a newer arena (schema {version}, known is {SCHEMA_VERSION})"
+            )
+        self.config, self.versions, self.sources = map(self._value, ("config", "versions", "sources"))
+        known = isinstance(self.versions, dict) and isinstance(self.sources, dict)
+        if not known or not is_valid_config(self.config):
+            raise self._damaged("its tournament is incomplete")
+
+    def _value(self, key: str) -> Any:
         query = "SELECT value FROM tournament WHERE key = ?"
         with self._reading():
-            return json.loads(self._connection.execute(query, (key,)).fetchone()[0])
+            row = self._connection.execute(query, (key,)).fetchone()
+        try:
+            return json.loads(row[0]) if row and isinstance(row[0], str) else None
+        except (ValueError, RecursionError) as error:  # of an integer with too many digits, too
+            raise self._damaged(first_line(error)) from error
+
+    def _damaged(self, reason: str) -> ResultsError:
+        return ResultsError(f"{self.path} is damaged: {reason}")
+
+    @contextmanager
+    def _reading(self) -> Iterator[None]:
+        """Tell what SQLite says of a damaged file in one sentence."""
+        try:
+            yield
+        except (sqlite3.Error, MemoryError) as error:
+            raise self._damaged(first_line(error)) from error
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        try:
+            with self._connection:
+                self._connection.execute("BEGIN IMMEDIATE")
+                yield
+        except sqlite3.Error as error:
+            raise _unwritable(self.path, error) from error
 
 
-def _words(error: BaseException) -> str:
+def first_line(error: BaseException) -> str:
+    """Of the message; the name of the error's class if it has none."""
     return str(error).splitlines()[0] if str(error) else type(error).__name__
+
+
+def _unwritable(path: Path | None, error: BaseException) -> ResultsError:
+    return ResultsError(f"cannot write the results file {path}: {first_line(error)}")
+
+
+def _connect(uri: str) -> sqlite3.Connection:
+    # Results that are dropped are closed by whichever thread collects them.
+    return sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
+
+
+def _fill(connection: sqlite3.Connection, rows: list[tuple[str, str]]) -> None:
+    connection.executescript(_SCHEMA)
+    with connection:
+        connection.executemany("INSERT INTO tournament VALUES (?, ?)", rows)

@@ -11,9 +11,10 @@ from agents.interop.policy import Policy
 from arena.common.html import represent
 from arena.tournament.conditions import Conditions
 from envs import Hill
+from envs.foundation.errors import InvalidValueError
 
 
-class UnknownPolicyError(ValueError):
+class UnknownPolicyError(InvalidValueError):
     """What a run has learned cannot be told from its results file; the message says why."""
 
 

@@ -17,6 +17,7 @@ from arena.tournament.entrant import Entrant, sweep
 from arena.tournament.tournament import Tournament
 from envs import Hill
 from envs.foundation.checks import choice
+from envs.foundation.errors import InvalidTypeError, InvalidValueError, naming
 
 _KEYS = (*(field.name for field in fields(Tournament)), "plugins")
 _log = logging.getLogger("arena")
@@ -40,12 +41,8 @@ def load_tournament(path: str | Path, **changes: Any) -> Tournament:
     """
     path = Path(path)
     content = read_toml(path, "tournament file")
-    try:
+    with naming(str(path)):
         return from_dict({"name": path.stem, **content, **changes}, path.parent)
-    except TypeError as error:
-        raise TypeError(f"{path}: {error}") from error
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
 
 
 def read_toml(path: str | Path, what: str = "file") -> dict[str, Any]:
@@ -57,11 +54,11 @@ def read_toml(path: str | Path, what: str = "file") -> dict[str, Any]:
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise ValueError(f"there is no {what} {path}") from None
+        raise InvalidValueError(f"there is no {what} {path}") from None
     except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from error
+        raise InvalidValueError(f"{path}: {error.strerror or error}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path} is not a TOML file: {error}") from error
+        raise InvalidValueError(f"{path} is not a TOML file: {error}") from error
 
 
 def from_dict(content: Mapping[str, Any], folder: Path = Path()) -> Tournament:
@@ -84,14 +81,14 @@ def from_dict(content: Mapping[str, Any], folder: Path = Path()) -> Tournament:
     broken = _load_plugins(arguments.pop("plugins", []), folder)
     tables = arguments.pop("entrants", [])
     if not isinstance(tables, list):
-        raise TypeError(f"entrants must be a list of tables, got {tables!r}")
+        raise InvalidTypeError(f"entrants must be a list of tables, got {tables!r}")
     return Tournament(tuple(one for table in tables for one in _entrants(table, broken)), **arguments)
 
 
 def _load_plugins(plugins: Any, folder: Path) -> list[PluginError]:
     """Load them; what is wrong with those that are broken."""
     if not isinstance(plugins, list) or not all(isinstance(plugin, str) for plugin in plugins):
-        raise TypeError(f"plugins must be a list of files, got {plugins!r}")
+        raise InvalidTypeError(f"plugins must be a list of files, got {plugins!r}")
     broken = []
     for plugin in plugins:
         try:
@@ -109,7 +106,7 @@ def build(name: str, kind: type[Any], table: Any) -> Any:
         TypeError, ValueError: when it is no table, or breaks a rule.
     """
     if not isinstance(table, Mapping):
-        raise TypeError(f"{name} must be a table, got {table!r}")
+        raise InvalidTypeError(f"{name} must be a table, got {table!r}")
     known = getattr(kind, "_fields", None) or tuple(kind.__dataclass_fields__)
     for key in table:
         choice(f"key of {name}", key, known)
@@ -127,7 +124,7 @@ def _agent(name: Any, broken: list[PluginError]) -> type[Any]:
     except BrokenAgentError as error:
         _log.warning("%s", error)
         return unavailable(name, str(error))
-    except ValueError:
+    except InvalidValueError:
         if not broken or not isinstance(name, str) or not name.isprintable():
             raise
     known = {*all_agents()[0]}.union(*(one.agents or () for one in broken))
@@ -140,15 +137,15 @@ def _agent(name: Any, broken: list[PluginError]) -> type[Any]:
 
 def _entrants(table: Any, broken: list[PluginError]) -> Iterator[Entrant]:
     if not isinstance(table, Mapping):
-        raise TypeError(f"each of entrants must be a table, got {table!r}")
+        raise InvalidTypeError(f"each of entrants must be a table, got {table!r}")
     for key in table:
         choice("key of an entrant", key, _ENTRANT_KEYS)
     if "agent" not in table:
-        raise ValueError("each of entrants must have an agent")
+        raise InvalidValueError("each of entrants must have an agent")
     name = table.get("name", table["agent"])
     agent = _agent(table["agent"], broken)
     parameters, over = table.get("parameters", {}), table.get("sweep", {})
     for key, value in (("parameters", parameters), ("sweep", over)):
         if not isinstance(value, Mapping):
-            raise TypeError(f"{key} of entrant {name!r} must be a table, got {value!r}")
+            raise InvalidTypeError(f"{key} of entrant {name!r} must be a table, got {value!r}")
     yield from sweep(name, agent, over, **parameters) if over else [Entrant(name, agent, **parameters)]

@@ -15,6 +15,7 @@ from arena.common.plain import plain
 from arena.plugins.freshness import check_fresh, code_of
 from arena.plugins.loading import PluginSource, source_of
 from arena.plugins.unavailable import Unavailable
+from envs.foundation.errors import InvalidTypeError, InvalidValueError, naming
 
 
 @dataclass(frozen=True, init=False)
@@ -40,16 +41,12 @@ class Entrant:
 
     def __init__(self, name: str, agent: type[Any], /, **parameters: Any) -> None:
         if not isinstance(name, str) or not name.strip() or not name.isprintable():
-            raise ValueError(f"name must be a printable text that is not empty, got {name!r}")
+            raise InvalidValueError(f"name must be a printable text that is not empty, got {name!r}")
         check_methods(agent)
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "agent", agent)
-        try:
+        with naming(f"entrant {name!r}"):
             complete = settle_all(agent, agent_name(agent), parameters)
-        except TypeError as error:
-            raise TypeError(f"entrant {name!r}: {error}") from error
-        except ValueError as error:
-            raise ValueError(f"entrant {name!r}: {error}") from error
         object.__setattr__(self, "parameters", complete)
         object.__setattr__(self, "given", frozenset(parameters))
         code_of(agent)  # what is edited from now on is not what this process has imported
@@ -112,14 +109,16 @@ def sweep(
             parameter is given as well.
     """
     if not isinstance(over, Mapping):
-        raise TypeError(f"over must be a mapping from parameters to lists of values, got {over!r}")
+        raise InvalidTypeError(f"over must be a mapping from parameters to lists of values, got {over!r}")
     for key, values in over.items():
         if key in parameters:
-            raise ValueError(
+            raise InvalidValueError(
                 f"sweep of {key} must not be of a parameter that is given, got {parameters[key]!r}"
             )
         if not isinstance(values, Sequence) or isinstance(values, str) or not values:
-            raise ValueError(f"sweep of {key} must be a list of values that is not empty, got {values!r}")
+            raise InvalidValueError(
+                f"sweep of {key} must be a list of values that is not empty, got {values!r}"
+            )
     for values in itertools.product(*over.values()):
         chosen = dict(zip(over, values, strict=True))
         label = " ".join([name, *(_label(key, value) for key, value in chosen.items())])

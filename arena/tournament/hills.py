@@ -2,6 +2,7 @@
 
 from arena.tournament.configuration import build, read_toml
 from envs import Hill
+from envs.foundation.errors import InvalidValueError, naming
 
 HILLS = {"paper": Hill(), "constrained": Hill(dynamics="constrained")}
 """The paper's, Eq. (7), and the same with the full equation of motion (docs/physics.md)."""
@@ -20,12 +21,10 @@ def find_hill(name: str) -> Hill:
     if name in HILLS:
         return HILLS[name]
     if not name.endswith(".toml"):
-        raise ValueError(
+        raise InvalidValueError(
             f"hill must be one of {', '.join(HILLS)}, or a file that ends in .toml, got {name!r}"
         )
     content = read_toml(name)
-    try:
+    with naming(name):
         found: Hill = build("hill", Hill, content.get("hill"))
-    except (TypeError, ValueError) as error:
-        raise type(error)(f"{name}: {error}") from error
     return found

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from arena.common.npz import Arrays, pack
 from arena.tournament.conditions import Run
+from envs.foundation.errors import InvalidValueError
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,11 @@ class Outcome:
     arrays: bytes = b""
     error: str = ""
 
+    @property
+    def key(self) -> tuple[str, int]:
+        """Entrant and replicate."""
+        return self.entrant, self.replicate
+
 
 def score(lengths: NDArray[np.int64], reached: NDArray[np.bool_]) -> tuple[float, float]:
     """The paper's accuracy in percent and mean length of the successful episodes (section 4.3)."""
@@ -64,7 +70,7 @@ def complete(
     arrays = agent_arrays(agent)
     for name, array in arrays.items():
         if np.issubdtype(array.dtype, np.inexact) and np.isnan(array).any():
-            raise ValueError(
+            raise InvalidValueError(
                 f"{name} must be free of NaN after training, got {np.isnan(array).sum()} of them"
             )
     arrays |= {"lengths": lengths, "test_lengths": test_lengths, "test_reached": test_reached}

@@ -16,6 +16,7 @@ from arena.tournament.entrant import Entrant
 from arena.tournament.readings import READINGS
 from envs import Hill
 from envs.foundation.checks import choice, instance, number
+from envs.foundation.errors import InvalidTypeError, InvalidValueError
 
 _log = logging.getLogger("arena")
 
@@ -66,7 +67,7 @@ class Tournament:
         for attribute, kind in (("hill", Hill), ("training", Training), ("evaluation", Evaluation)):
             instance(attribute, getattr(self, attribute), kind)
         if not isinstance(self.name, str) or not self.name.strip() or not self.name.isprintable():
-            raise ValueError(f"name must be a printable text that is not empty, got {self.name!r}")
+            raise InvalidValueError(f"name must be a printable text that is not empty, got {self.name!r}")
         _integers(self, "", seed=0, max_replicates=1, leaders=1)
         if self.replicates != ADAPTIVE:
             _integers(self, "", replicates=1)
@@ -82,7 +83,7 @@ class Tournament:
             try:
                 entrant.create(hill, np.random.default_rng(0))
             except (TypeError, ValueError) as error:
-                problem = TypeError if isinstance(error, TypeError) else ValueError
+                problem = InvalidTypeError if isinstance(error, TypeError) else InvalidValueError
                 raise problem(f"entrant {entrant.name!r}: {error}") from error
             except Exception:  # no bad parameter but a bad agent: its runs will fail and tell
                 _log.debug("entrant %r cannot be created", entrant.name, exc_info=True)
@@ -93,11 +94,13 @@ class Tournament:
         if self.replicates != ADAPTIVE:
             return
         if self.max_replicates > MOST or confidence == 1.0:
-            raise ValueError(f"adaptive replicates need a confidence below 1 and at most {MOST} replicates")
+            raise InvalidValueError(
+                f"adaptive replicates need a confidence below 1 and at most {MOST} replicates"
+            )
         if not looks(len(self.entrants), self.max_replicates, confidence):
             enough = range(self.max_replicates, MOST)
             least = next((n for n in enough if looks(len(self.entrants), n, confidence)), None)
-            raise ValueError(
+            raise InvalidValueError(
                 f"max_replicates must be at least {least} to tell {len(self.entrants)} entrants apart at "
                 f"{100.0 * confidence:g}% confidence, got {self.max_replicates}"
             )
@@ -145,11 +148,11 @@ def _entrants(entrants: Iterable[Any]) -> tuple[Entrant, ...]:
     found = tuple(entrants) if isinstance(entrants, Iterable) else (entrants,)
     for entrant in found:
         if not isinstance(entrant, Entrant):
-            raise TypeError(f"entrants must be Entrant objects, got {entrant!r}")
+            raise InvalidTypeError(f"entrants must be Entrant objects, got {entrant!r}")
     names = [entrant.name for entrant in found]
     if not names:
-        raise ValueError("entrants must be one or more, got none")
+        raise InvalidValueError("entrants must be one or more, got none")
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"entrants must have names that differ, got {twice!r} twice")
+        raise InvalidValueError(f"entrants must have names that differ, got {twice!r} twice")
     return found

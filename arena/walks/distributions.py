@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arena.common.parallel import imap
 from envs.foundation.checks import integer
+from envs.foundation.errors import InvalidValueError
 from envs.foundation.streams import stream
 
 Floats = NDArray[np.float64]
@@ -140,7 +141,7 @@ def fit_all(lengths: ArrayLike, seed: int = 0, bootstraps: int = BOOTSTRAPS, n_j
     """
     x = np.asarray(lengths, np.float64)
     if x.ndim != 1 or len(np.unique(x)) < 2 or not (np.isfinite(x).all() and x.min() > 0.0):
-        raise ValueError(
+        raise InvalidValueError(
             f"lengths must be positive numbers of which at least two differ, got {np.unique(x)[:3].tolist()}"
         )
     seed, bootstraps = integer("seed", seed, 0), integer("bootstraps", bootstraps, 1)

@@ -13,6 +13,7 @@ from arena.walks.loop import TOGETHER, walk
 from envs import Hill
 from envs.compilation.kernels import compile_loop
 from envs.foundation.checks import instance, integer
+from envs.foundation.errors import InvalidValueError
 from envs.foundation.streams import stream
 
 Progress = Callable[[int, int], None]
@@ -91,7 +92,7 @@ def random_walk(
     total, seed = integer("episodes", episodes, 1), integer("seed", seed, 0)
     limit = integer("max_steps", max_steps, 1)
     if integer("n_jobs", n_jobs) == 0:
-        raise ValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
+        raise InvalidValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
     parts: dict[int, _Part] = {}
     try:
         if compiled:

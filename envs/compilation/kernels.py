@@ -18,6 +18,7 @@ from typing import Any
 
 from envs.compilation.numba_methods import _offer
 from envs.compilation.reachable import Reached
+from envs.foundation.errors import InvalidTypeError
 
 _lock = threading.RLock()
 _ready: dict[str, Callable[..., Any]] = {}
@@ -25,7 +26,7 @@ _ready: dict[str, Callable[..., Any]] = {}
 _LOOP = {"nogil": True, "error_model": "numpy"}
 
 
-class CompilationError(TypeError):
+class CompilationError(InvalidTypeError):
     """The loop cannot be compiled for these parts; the message is the reason, one line."""
 
 

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any, Self
 
+from envs.foundation.errors import InvalidTypeError, InvalidValueError
+
 
 class Validated:
     """Mixin of a named tuple with a constructor that validates: ``_replace`` validates, too."""
@@ -25,7 +27,7 @@ def instance(name: str, value: Any, kind: type[Any]) -> Any:
         TypeError: when it is not.
     """
     if not isinstance(value, kind):
-        raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
+        raise InvalidTypeError(f"{name} must be a {kind.__name__}, got {value!r}")
     return value
 
 
@@ -39,13 +41,13 @@ def number(
         ValueError: when it is NaN, infinite or out of the range.
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(f"{name} must be a number, got {value!r}")
+        raise InvalidTypeError(f"{name} must be a number, got {value!r}")
     try:
         found = float(value)
     except OverflowError:
         found = math.inf
     if not math.isfinite(found) or not low <= found <= high or (above and found == low):
-        raise ValueError(f"{name} must be {_range(low, high, above)}, got {value!r}")
+        raise InvalidValueError(f"{name} must be {_range(low, high, above)}, got {value!r}")
     return found
 
 
@@ -61,9 +63,9 @@ def integer(name: str, value: Any, low: int | None = None) -> int:
             raise TypeError
         found = operator.index(value)
     except TypeError:
-        raise TypeError(f"{name} must be an integer, got {value!r}") from None
+        raise InvalidTypeError(f"{name} must be an integer, got {value!r}") from None
     if low is not None and found < low:
-        raise ValueError(f"{name} must be at least {low}, got {found}")
+        raise InvalidValueError(f"{name} must be at least {low}, got {found}")
     return found
 
 
@@ -77,7 +79,7 @@ def choice(name: str, value: Any, options: Iterable[str]) -> str:
     if not isinstance(value, str) or value not in known:
         near = get_close_matches(str(value), known, n=1)
         hint = f"; did you mean {near[0]!r}?" if near else ""
-        raise ValueError(f"{name} must be one of {', '.join(known) or 'nothing'}, got {value!r}{hint}")
+        raise InvalidValueError(f"{name} must be one of {', '.join(known) or 'nothing'}, got {value!r}{hint}")
     return value
 
 

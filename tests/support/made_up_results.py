@@ -28,10 +28,9 @@ def made_up(
     that failed. Replicates that an entrant lacks are not run yet.
     """
     chosen: dict[str, Any] = {"replicates": max(1, *map(len, steps.values())), "name": "made up"}
+    chosen |= {"training": Training(10, 1000), "evaluation": Evaluation(4, LIMIT)}
     tournament = Tournament(
         tuple(Entrant(name, MomentumAgent) for name in steps),
-        training=Training(10, 1000),
-        evaluation=Evaluation(4, LIMIT),
         **chosen | arguments,
     )
     store = Store.create(path, tournament.to_dict())

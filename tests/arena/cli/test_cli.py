@@ -163,6 +163,22 @@ def test_bad_input_is_one_clear_line_and_exit_code_2(
     assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
 
 
+def test_a_mistake_of_ours_is_no_bad_input(
+    race: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise TypeError("unsupported operand type(s) for +: 'NoneType' and 'int'")
+
+    assert main(["run", race, "--jobs", "1"]) == 0
+    capsys.readouterr()
+    monkeypatch.setattr("arena.results.results.Results.__init__", broken)
+    assert main(["show", "runs/race.sqlite"]) == 70
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("Traceback")
+    assert "arena: this is a mistake of the arena; please report it with the lines above" in told.err
+
+
 def test_another_tournament_s_file_is_not_overwritten(race: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", race, "--jobs", "1"]) == 0
     before = Path("runs/race.sqlite").read_bytes()

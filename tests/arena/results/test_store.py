@@ -26,6 +26,7 @@ from arena.reproduction import compare
 from arena.results import digest
 from arena.results.store import SCHEMA_VERSION, Store
 from arena.tournament.outcome import Outcome, score
+from envs.foundation.errors import ArenaError
 
 
 @pytest.fixture
@@ -201,7 +202,7 @@ def test_nothing_but_one_sentence_comes_of_a_file_with_wrong_bytes(
         content[start : start + data.draw(st.integers(1, 64))] = data.draw(st.binary(max_size=64))
     path = tmp_path / "wrong.sqlite"
     path.write_bytes(content)
-    with contextlib.suppress(ValueError):
+    with contextlib.suppress(ArenaError):
         read_all(path)
 
 
@@ -237,7 +238,7 @@ def test_nothing_but_one_sentence_comes_of_a_file_with_wrong_contents(
         connection.execute(f"UPDATE {table} SET {column} = ? WHERE rowid = 1", (value,))  # noqa: S608
         connection.commit()
     connection.close()
-    with contextlib.suppress(ValueError):
+    with contextlib.suppress(ArenaError):
         read_all(path)
 
 

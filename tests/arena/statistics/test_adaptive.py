@@ -214,15 +214,15 @@ def test_the_command_line(
 @settings(max_examples=30, deadline=None)
 @given(data=st.data())
 def test_a_damaged_configuration_is_told(data: st.DataObject) -> None:
-    from arena.results.schema import _sound
+    from arena.results.schema import is_valid_config
 
     config = json.loads(json.dumps(race().to_dict()))
-    assert _sound(config)
+    assert is_valid_config(config)
     key = data.draw(st.sampled_from(["max_replicates", "confidence", "leaders", "replicates", "training"]))
     config[key] = data.draw(st.sampled_from([None, "x", -1, 0, [], {}, float("nan"), 10**9, True]))
     fine = isinstance(config["replicates"], int) or (key == "leaders" and config[key] in (True, 10**9))
     fine |= key == "max_replicates" and config[key] is True
-    assert _sound(config) == fine
+    assert is_valid_config(config) == fine
 
 
 def test_the_gate_takes_adaptive_files_of_unlike_length() -> None:

@@ -19,7 +19,7 @@ import numba
 import numpy as np
 
 from agents import Grid, QLearning, Sarsa
-from arena.execution.loops import listener, train
+from arena.execution.loops import TrainingLoop, episode_hook, train
 from envs import Hill
 from envs.compilation import compile_loop
 
@@ -92,12 +92,12 @@ def compare(cls: type[Any], episodes: int, repeats: int) -> dict[str, float]:
     def ours() -> Any:
         agent = cls.create(hill, bins=bins)
 
-        def arguments() -> tuple[Any, ...]:
-            driven = (hill, agent, listener(agent), hill.n_actions)
-            return (*driven, 0, episodes, episodes, limit, *streams(), lengths)
+        def loop() -> TrainingLoop:
+            hook = episode_hook(agent)
+            return TrainingLoop(hill, agent, hook, hill.n_actions, episodes, limit, *streams(), lengths)
 
-        loop = compile_loop(train, *arguments())
-        return agent.values, lambda: loop(*arguments())
+        kernel = compile_loop(train, loop(), 0, episodes)
+        return agent.values, lambda: kernel(loop(), 0, episodes)
 
     def hand() -> Any:
         q, visits = np.zeros((grid.size, 3)), np.zeros((grid.size, 3), np.int64)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from agents.algorithms.value_iteration import GridPlanner
 from agents.optimal import NEVER, Optimal, optimal_steps
-from arena.execution.loops import evaluate
+from arena.execution.loops import EvaluationLoop, evaluate
 from envs import Hill
 from envs.compilation import compile_loop
 
@@ -52,8 +52,8 @@ def lengths(hill: Hill, agent: Any, positions: NDArray[np.float64]) -> Steps:
     """Steps of an agent's greedy drives; ``NEVER`` where it needs more than ``PATIENCE``."""
     starts = np.stack([positions, np.zeros_like(positions)], axis=1)
     steps, reached = np.zeros(len(starts), np.int64), np.zeros(len(starts), np.bool_)
-    arguments = (hill, agent, hill.n_actions, starts, PATIENCE, steps, reached)
-    compile_loop(evaluate, *arguments)(*arguments)
+    loop = EvaluationLoop(hill, agent, hill.n_actions, starts, PATIENCE, steps, reached)
+    compile_loop(evaluate, loop)(loop)
     return np.where(reached, steps, NEVER)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arena.common.parallel import imap
+from arena.common.parallel import parallel_map_unordered
 from arena.results.results import Results
 from envs import Hill
 
@@ -32,7 +32,9 @@ def fewest_steps(results: Results, replicates: Iterable[int]) -> Bounds:
     distinct = np.unique(np.concatenate([*positions.values(), np.empty(0)]))
     parts = np.array_split(distinct, max(1, len(distinct) // _TOGETHER))
     bounds: dict[float, int] = {}
-    for part, steps in imap(-1, _lower_bounds, [(hill, part) for part in parts if len(part)]):
+    for part, steps in parallel_map_unordered(
+        -1, _lower_bounds, [(hill, part) for part in parts if len(part)]
+    ):
         bounds.update(zip(part.tolist(), steps.tolist(), strict=True))
     return {
         replicate: np.minimum([bounds[start] for start in starts.tolist()], evaluation.max_steps).astype(

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any
 
 
-def imap(
+def parallel_map_unordered(
     n_jobs: int, function: Callable[..., Any], tasks: list[Any], *, apart: bool = False
 ) -> Generator[Any, None, None]:
     """The results as they come in, where joblib's backend can do that, else at the end.

@@ -9,59 +9,121 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.tournament.conditions import Conditions, Run
+
 Lengths = NDArray[np.int64]
 
 
-class Deaf(NamedTuple):
+class NoEpisodeHook(NamedTuple):
     """Stands in for an agent that does not ask when an episode begins."""
 
-    ears: int = 0
+    nothing: int = 0  # numba needs a field
 
     def begin_episode(self) -> None:
-        """Nothing."""
+        """Do nothing."""
 
 
-def listener(agent: Any) -> Any:
-    """The agent itself if it has the optional method ``begin_episode``, else one that ignores it."""
-    return agent if hasattr(agent, "begin_episode") else Deaf()
+def episode_hook(agent: Any) -> Any:
+    """The agent itself if it has the optional method ``begin_episode``, else a hook that does nothing."""
+    return agent if hasattr(agent, "begin_episode") else NoEpisodeHook()
 
 
-def train(
-    hill: Any,
-    agent: Any,
-    listener: Any,
-    n_actions: int,
-    first: int,
-    last: int,
-    episodes: int,
-    max_steps: int,
-    starts: np.random.Generator,
-    rng: np.random.Generator,
-    lengths: Lengths,
-) -> None:
-    """Let ``agent`` learn (paper, section 4.3).
+class TrainingLoop(NamedTuple):
+    """What ``train`` needs and changes.
 
-    Args:
+    Attributes:
         hill: the model of the car.
         agent: what drives and learns; changed in place.
-        listener: what hears when an episode begins, see ``listener``.
+        hook: whose ``begin_episode`` is called, see ``episode_hook``.
         n_actions: the actions are 0, 1, ..., n_actions - 1.
-        first: the episode to begin with.
-        last: the episode to end before.
         episodes: number N_E of all episodes.
         max_steps: limit N_LE of an episode.
-        starts: the stream that starts come from.
-        rng: the stream of the agent's choices.
+        start_rng: the stream that starts come from.
+        action_rng: the stream of the agent's choices.
         lengths: filled with the steps of each episode, shape (episodes,).
+    """
+
+    hill: Any
+    agent: Any
+    hook: Any
+    n_actions: int
+    episodes: int
+    max_steps: int
+    start_rng: np.random.Generator
+    action_rng: np.random.Generator
+    lengths: Lengths
+
+
+class EvaluationLoop(NamedTuple):
+    """What ``evaluate`` needs and fills.
+
+    Attributes:
+        hill: the model of the car.
+        agent: what drives; it does not learn.
+        n_actions: the actions are 0, 1, ..., n_actions - 1.
+        start_states: positions and velocities, shape (episodes, 2).
+        max_steps: limit N_TS of an episode.
+        lengths: filled with the steps of each episode, shape (episodes,).
+        reached: filled with whether the goal was reached, shape (episodes,).
+    """
+
+    hill: Any
+    agent: Any
+    n_actions: int
+    start_states: NDArray[np.float64]
+    max_steps: int
+    lengths: Lengths
+    reached: NDArray[np.bool_]
+
+
+def training_loop(conditions: Conditions, run: Run, agent: Any) -> TrainingLoop:
+    """The training of a run, from its own random streams."""
+    hill, training = conditions.hill, conditions.training
+    return TrainingLoop(
+        hill,
+        agent,
+        episode_hook(agent),
+        hill.n_actions,
+        training.episodes,
+        training.max_steps,
+        run.stream(conditions.seed, "start"),
+        run.stream(conditions.seed, "act"),
+        np.zeros(training.episodes, np.int64),
+    )
+
+
+def evaluation_loop(conditions: Conditions, run: Run, agent: Any) -> EvaluationLoop:
+    """The evaluation of a run, from the starts that all entrants have."""
+    hill, evaluation = conditions.hill, conditions.evaluation
+    return EvaluationLoop(
+        hill,
+        agent,
+        hill.n_actions,
+        conditions.start_states(run.replicate),
+        evaluation.max_steps,
+        np.zeros(evaluation.episodes, np.int64),
+        np.zeros(evaluation.episodes, np.bool_),
+    )
+
+
+def train(loop: TrainingLoop, first: int, last: int) -> None:
+    """Let the agent learn (paper, section 4.3).
+
+    Args:
+        loop: what drives where.
+        first: the episode to begin with.
+        last: the episode to end before.
 
     Raises:
         ValueError: when the agent chooses an action that there is not.
     """
+    hill, agent, n_actions, max_steps = loop.hill, loop.agent, loop.n_actions, loop.max_steps
+    rng = loop.action_rng
     for episode in range(first, last):
-        progress = episode / episodes
-        state = hill.reset(starts)
+        progress = episode / loop.episodes
+        state = hill.reset(loop.start_rng)
         observation = hill.observe(state)
-        listener.begin_episode()
+        loop.hook.begin_episode()
         action = checked(agent.act(observation, progress, rng), n_actions)
         steps = 0
         terminated = False
@@ -73,42 +135,26 @@ def train(
             observation = next_observation
             action = next_action
             steps += 1
-        lengths[episode] = steps
+        loop.lengths[episode] = steps
 
 
-def evaluate(
-    hill: Any,
-    agent: Any,
-    n_actions: int,
-    starts: NDArray[np.float64],
-    max_steps: int,
-    lengths: Lengths,
-    reached: NDArray[np.bool_],
-) -> None:
+def evaluate(loop: EvaluationLoop) -> None:
     """Drive greedily from each start (paper, section 4.3).
-
-    Args:
-        hill: the model of the car.
-        agent: what drives; it does not learn.
-        n_actions: the actions are 0, 1, ..., n_actions - 1.
-        starts: positions and velocities, shape (episodes, 2).
-        max_steps: limit N_TS of an episode.
-        lengths: filled with the steps of each episode, shape (episodes,).
-        reached: filled with whether the goal was reached, shape (episodes,).
 
     Raises:
         ValueError: when the agent chooses an action that there is not.
     """
-    for episode in range(starts.shape[0]):
-        state = (starts[episode, 0], starts[episode, 1])
+    hill, agent, n_actions, max_steps = loop.hill, loop.agent, loop.n_actions, loop.max_steps
+    for episode in range(loop.start_states.shape[0]):
+        state = (loop.start_states[episode, 0], loop.start_states[episode, 1])
         steps = 0
         terminated = False
         while steps < max_steps and not terminated:
             action = checked(agent.greedy(hill.observe(state)), n_actions)
             state, _, terminated = hill.step(state, action)
             steps += 1
-        lengths[episode] = steps
-        reached[episode] = terminated
+        loop.lengths[episode] = steps
+        loop.reached[episode] = terminated
 
 
 def checked(action: int, n_actions: int) -> int:

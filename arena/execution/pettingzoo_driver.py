@@ -11,18 +11,17 @@ from typing import Any
 import numpy as np
 
 from arena.execution.checkpoint import checkpoint_of
-from arena.execution.loops import listener
+from arena.execution.loops import episode_hook
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome
 from envs.foundation.checks import integer
 from envs.foundation.errors import InvalidValueError
-from envs.foundation.streams import stream
 
 NAME = "pettingzoo"
 _NO_THRUST = 1
 
 
-def race(conditions: Conditions, runs: Iterable[Run]) -> list[Outcome]:
+def drive(conditions: Conditions, runs: Iterable[Run]) -> list[Outcome]:
     """Train and evaluate the cars of ``runs``, all at the same time.
 
     A car whose agent raises is parked, and is told as failed; the others drive on.
@@ -47,8 +46,8 @@ class _Car:
         self.error = ""
         self.action = _NO_THRUST
         self.n_actions = conditions.hill.n_actions
-        self.rng = stream(conditions.seed, "act", run.identity)
-        self.starts = conditions.start_states(run.replicate)
+        self.rng = run.stream(conditions.seed, "act")
+        self.start_states = conditions.start_states(run.replicate)
         self.lengths = np.zeros(conditions.training.episodes, np.int64)
         self.test_lengths = np.zeros(conditions.evaluation.episodes, np.int64)
         self.test_reached = np.zeros(conditions.evaluation.episodes, np.bool_)
@@ -56,11 +55,12 @@ class _Car:
         self.attempt(self.equip, conditions)
 
     def equip(self, conditions: Conditions) -> None:
-        seed, identity = conditions.seed, self.run.identity
-        self.agent = self.run.entrant.create(conditions.hill, stream(seed, "create", identity))
-        self.listener = listener(self.agent)
-        self.begins = stream(seed, "start", identity)
-        self.checkpoint = checkpoint_of(conditions, self.run, self.agent, self.begins, self.rng, self.lengths)
+        self.agent = self.run.entrant.create(conditions.hill, self.run.stream(conditions.seed, "create"))
+        self.hook = episode_hook(self.agent)
+        self.start_rng = self.run.stream(conditions.seed, "start")
+        self.checkpoint = checkpoint_of(
+            conditions, self.run, self.agent, self.start_rng, self.rng, self.lengths
+        )
         self.done = self.checkpoint.restore()
 
     def attempt(self, call: Callable[..., None], *arguments: Any) -> None:
@@ -78,7 +78,7 @@ class _Car:
         self.checkpoint.save(episode)
 
     def begin_episode(self, observation: Any, progress: float) -> None:
-        self.listener.begin_episode()
+        self.hook.begin_episode()
         self.observation = observation
         self.progress = progress
         self.action = self._checked(self.agent.act(observation, progress, self.rng))
@@ -118,7 +118,7 @@ def _train(conditions: Conditions, cars: Mapping[str, _Car]) -> None:
             saved = time.monotonic()
             for car in cars.values():
                 car.attempt(car.save, episode)
-        start = {name: conditions.hill.reset(car.begins) for name, car in cars.items() if not car.error}
+        start = {name: conditions.hill.reset(car.start_rng) for name, car in cars.items() if not car.error}
         observations, _ = env.reset(options={"start": start})
         for name, car in cars.items():
             car.attempt(car.begin_episode, observations[name], episode / training.episodes)
@@ -136,7 +136,7 @@ def _evaluate(conditions: Conditions, cars: Mapping[str, _Car]) -> None:
     evaluation = conditions.evaluation
     env = mountain_car_v0.parallel_env(list(cars), conditions.hill, evaluation.max_steps)
     for episode in range(evaluation.episodes):
-        start = {name: tuple(car.starts[episode]) for name, car in cars.items()}
+        start = {name: tuple(car.start_states[episode]) for name, car in cars.items()}
         observations, _ = env.reset(options={"start": start})
         while _driving(env.agents, cars):
             live = env.agents

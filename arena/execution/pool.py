@@ -13,16 +13,15 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from pathlib import Path
 
-from arena.common.parallel import imap
-from arena.execution import watchdog as claims
-from arena.execution.watchdog import Limits
+from arena.common.parallel import parallel_map_unordered
+from arena.execution.watchdog import Limits, lease, open_leases, parent_watchdog
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome
 from envs.foundation.errors import InvalidValueError
 
 Work = Callable[[str, Conditions, list[Run]], list[Outcome]]
 Task = tuple[str, Conditions, list[Run]]
-Finishing = Generator[list[Outcome], None, None]
+Outcomes = Generator[list[Outcome], None, None]
 _UNEXPLAINED = 3  # deaths without a suspect before all are tried alone
 
 
@@ -42,37 +41,39 @@ def check_enforceable(limits: Limits) -> None:
         )
 
 
-def survive(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Finishing:
+def run_tasks(n_jobs: int, work: Work, tasks: list[Task], limits: Limits) -> Outcomes:
     """The outcomes of all tasks, of those whose worker died as failed."""
     with tempfile.TemporaryDirectory(prefix="arena-") as name:
         folder = Path(name)
-        with claims.backstop(folder, limits):
-            yield from _survive(n_jobs, work, tasks, limits, folder)
+        with parent_watchdog(folder, limits):
+            yield from _run_until_done(n_jobs, work, tasks, limits, folder)
 
 
-def _survive(
+def _run_until_done(
     n_jobs: int, work: Work, tasks: list[Task], limits: Limits, folder: Path, *, alone: bool = False
-) -> Finishing:
+) -> Outcomes:
     unexplained = 0
     left = {run.identity: (driver, conditions, run) for driver, conditions, runs in tasks for run in runs}
     while tasks:
         arguments = [(work, task, folder, limits, os.getpid()) for task in tasks]
         try:
-            with closing(imap(n_jobs, _claim_and_work, arguments, apart=bool(limits))) as finishing:
-                for outcomes in finishing:
+            with closing(
+                parallel_map_unordered(n_jobs, _lease_and_work, arguments, apart=bool(limits))
+            ) as results:
+                for outcomes in results:
                     for outcome in outcomes:
                         del left[outcome.identity]
                     yield outcomes
         except BrokenProcessPool as death:
             suspects = _suspects(folder)
             unexplained += not suspects
-            if unexplained == _UNEXPLAINED:  # they die before they can claim anything
+            if unexplained == _UNEXPLAINED:  # they die before they can leave a lease
                 suspects = dict.fromkeys(left, "")
             if alone:  # the second death, and nobody else is there
                 suspects = {name: reason or _exit_codes(death) for name, reason in suspects.items()}
         else:
             return
-        yield from _try_alone(suspects, left, work, limits, folder)
+        yield from _retry_alone(suspects, left, work, limits, folder)
         tasks = [
             (driver, conditions, remaining)
             for driver, conditions, runs in tasks
@@ -80,35 +81,35 @@ def _survive(
         ]
 
 
-def _try_alone(
+def _retry_alone(
     suspects: dict[str, str],
     left: dict[str, tuple[str, Conditions, Run]],
     work: Work,
     limits: Limits,
     folder: Path,
-) -> Finishing:
+) -> Outcomes:
     """The outcomes of the suspects, which leave ``left``: failed where the reason is known."""
     for identity, reason in suspects.items():
         driver, conditions, run = left.pop(identity)
         if reason:
             yield [Outcome.failure(run, driver, f"the worker died: {reason}")]
         else:
-            yield from _survive(2, work, [(driver, conditions, [run])], limits, folder, alone=True)
+            yield from _run_until_done(2, work, [(driver, conditions, [run])], limits, folder, alone=True)
 
 
-def _claim_and_work(work: Work, task: Task, folder: Path, limits: Limits, parent: int) -> list[Outcome]:
+def _lease_and_work(work: Work, task: Task, folder: Path, limits: Limits, parent: int) -> list[Outcome]:
     """In a worker."""
-    with claims.claimed(folder, [run.identity for run in task[2]], limits, parent):
+    with lease(folder, [run.identity for run in task[2]], limits, parent):
         return work(*task)
 
 
 def _suspects(folder: Path) -> dict[str, str]:
     """The runs that were being driven when a worker died, with the reason where it is known."""
     found: dict[str, str] = {}
-    for claim in claims.open_claims(folder):
-        for identity in claim.runs:
+    for open_lease in open_leases(folder):
+        for identity in open_lease.runs:
             # Of several cars driven together any may be the one that broke the limit.
-            found[identity] = claim.reason if len(claim.runs) == 1 else ""
+            found[identity] = open_lease.reason if len(open_lease.runs) == 1 else ""
     for path in folder.iterdir():
         path.unlink(missing_ok=True)
     return found

@@ -2,26 +2,31 @@
 
 from collections.abc import Callable
 from contextlib import closing
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 
 from arena.execution.checkpoint import discard
-from arena.execution.planning import _interpreted, _plan, _say_what_starts_anew, _travel
-from arena.execution.pool import check_enforceable, survive
+from arena.execution.planning import (
+    choose_interpreted,
+    find_unrunnable,
+    make_agents,
+    plan_tasks,
+    warn_if_not_resumable,
+)
+from arena.execution.pool import check_enforceable, run_tasks
 from arena.execution.stages import is_decided, pending_runs, stages_of
 from arena.execution.watchdog import Limits
-from arena.execution.worker import work
+from arena.execution.worker import DRIVERS, work
 from arena.plugins.freshness import renew_workers
 from arena.results.provenance import source_digests
 from arena.results.results import Results
 from arena.results.store import Store
+from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome
 from arena.tournament.tournament import Tournament
 from envs.foundation.checks import choice, instance, integer, number
 from envs.foundation.errors import InvalidValueError
-
-DRIVERS = ("auto", "compiled", "pettingzoo")
 
 Progress = Callable[[int, int], None]
 
@@ -53,51 +58,42 @@ def run(
 
     Raises:
         TypeError, ValueError: when an argument breaks its rule, ``out`` is another tournament's
-            file or cannot be written, or an agent cannot be compiled that has to be.
+            file or cannot be written, a parameter breaks a rule that only its agent knows, or an agent
+            cannot be compiled that has to be.
     """
     instance("tournament", tournament, Tournament)
-    choice("driver", driver, DRIVERS)
+    choice("driver", driver, ("auto", *DRIVERS))
     if integer("n_jobs", n_jobs) == 0:
         raise InvalidValueError("n_jobs must not be 0: give a number of workers, or -1 for one a core")
     seconds = number("checkpoint_seconds", checkpoint_seconds, 0)
     limits = Limits(tournament.time_limit, tournament.memory_limit)
     check_enforceable(limits)
     path = None if out is None else Path(out)
-    config = tournament.to_dict()
     resuming = path is not None and path.exists()
     agents = {entrant.agent for entrant in tournament.entrants if not entrant.unavailable}
-    sources = source_digests(agents)
+    config, sources = tournament.to_dict(), source_digests(agents)
     renew_workers(agents)
     store = Store.resume(path, config, sources) if path is not None and resuming else None
-    done = store.finished() if store else set()
-    stages = stages_of(tournament)
     try:
+        done = store.finished() if store else set()
+        stages = stages_of(tournament)
         pending = pending_runs(tournament, stages, store, done)
-        lost = _travel(pending)
-        travellers = [one for one in pending if one.entrant.name not in lost]
-        folder = None if path is None else f"{path}.checkpoints"
-        conditions = replace(tournament.conditions, checkpoints=folder, checkpoint_seconds=seconds)
-        interpreted = _interpreted(conditions, travellers, n_jobs, driver)
+        unrunnable = find_unrunnable(pending)
+        runnable = [run for run in pending if run.entrant.name not in unrunnable]
+        conditions = replace(
+            tournament.conditions,
+            checkpoints=None if path is None else f"{path}.checkpoints",
+            checkpoint_seconds=seconds,
+        )
+        samples = make_agents(conditions, runnable)
+        interpreted = choose_interpreted(conditions, runnable, samples, n_jobs, driver)
         store = store or Store.create(path, config, sources)
         if resuming:
-            _say_what_starts_anew(conditions, travellers)
-        report = progress or (lambda _finished, _total: None)
+            warn_if_not_resumable(samples)
+        execution = _Execution(store, conditions, n_jobs, limits, interpreted, unrunnable)
         for stage, look in stages:
-            left = [one for one in stage if one.key not in done]
-            for one in left:
-                if one.entrant.name in lost:
-                    store.add(Outcome.failure(one, "none", lost[one.entrant.name]))
-            driven = {one.key: one for one in left if one.entrant.name not in lost}
             total = len(tournament.entrants) * (stage[-1].replicate + 1)
-            finished = total - len(driven)
-            report(finished, total)
-            tasks = _plan(conditions, list(driven.values()), n_jobs, interpreted)
-            with closing(survive(n_jobs, work, tasks, limits)) as finishing:
-                for outcome in chain.from_iterable(finishing):
-                    store.add(outcome)
-                    discard(conditions, driven[outcome.key])
-                    finished += 1
-                    report(finished, total)
+            execution.run_stage([run for run in stage if run.key not in done], total, progress)
             if look and is_decided(tournament, store, look):
                 break
     except BaseException:
@@ -106,3 +102,32 @@ def run(
         raise
     store.release()
     return Results(store)
+
+
+@dataclass(frozen=True)
+class _Execution:
+    """How the runs of a tournament are driven, and where they are kept."""
+
+    store: Store
+    conditions: Conditions
+    n_jobs: int
+    limits: Limits
+    interpreted: set[str]
+    unrunnable: dict[str, str]
+
+    def run_stage(self, runs: list[Run], total: int, progress: Progress | None) -> None:
+        """Drive ``runs``, which bring the tournament to ``total`` finished ones, and keep each."""
+        for run in runs:
+            if run.entrant.name in self.unrunnable:
+                self.store.add(Outcome.failure(run, "none", self.unrunnable[run.entrant.name]))
+        driven = {run.key: run for run in runs if run.entrant.name not in self.unrunnable}
+        report = progress or (lambda _finished, _total: None)
+        finished = total - len(driven)
+        report(finished, total)
+        tasks = plan_tasks(self.conditions, list(driven.values()), self.n_jobs, self.interpreted)
+        with closing(run_tasks(self.n_jobs, work, tasks, self.limits)) as outcomes:
+            for outcome in chain.from_iterable(outcomes):
+                self.store.add(outcome)
+                discard(self.conditions, driven[outcome.key])
+                finished += 1
+                report(finished, total)

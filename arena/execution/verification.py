@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from arena.common.npz import unpack
 from arena.common.plain import none_for_nan
 from arena.execution import compiled_driver, pettingzoo_driver
-from arena.execution.pool import survive
+from arena.execution.pool import run_tasks
 from arena.execution.watchdog import Limits
 from arena.execution.worker import work
 from arena.results.digests import run_digest
@@ -17,7 +17,7 @@ from arena.tournament.configuration import from_dict
 from arena.tournament.outcome import Outcome
 from envs.compilation.kernels import CompilationError
 from envs.foundation.checks import integer
-from envs.foundation.errors import InvalidValueError
+from envs.foundation.errors import InvalidValueError, naming
 
 
 def verify(results: Results, runs: int = 4) -> Iterator[str]:
@@ -54,7 +54,7 @@ def verify(results: Results, runs: int = 4) -> Iterator[str]:
             chosen_driver = _other(driver, tournament.conditions, run) if other else driver
             tasks.append((chosen_driver, tournament.conditions, [run]))
         with joblib.parallel_config(backend=backend):
-            for outcomes in survive(n_jobs, work, tasks, Limits()):
+            for outcomes in run_tasks(n_jobs, work, tasks, Limits()):
                 for outcome in outcomes:
                     before = stored[outcome.key]
                     difference = _difference(results, before, outcome)
@@ -71,8 +71,10 @@ def _other(driver: str, conditions: Conditions, run: Run) -> str:
         return pettingzoo_driver.NAME
     if not hasattr(run.entrant.agent, "_fields"):
         return driver
+    with naming(f"entrant {run.entrant.name!r}", (Exception,)):
+        agent = compiled_driver.untrained(conditions, run)
     try:
-        compiled_driver.prepare(conditions, run)
+        compiled_driver.prepare(conditions, run, agent)
     except CompilationError:
         return driver
     return compiled_driver.NAME

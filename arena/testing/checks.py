@@ -10,7 +10,7 @@ import numpy as np
 
 from arena.execution import compiled_driver, pettingzoo_driver
 from arena.execution.checkpoint import checkpoint_of, savable
-from arena.execution.loops import listener
+from arena.execution.loops import episode_hook
 from arena.tournament.conditions import Conditions, Evaluation, Run, Training
 from arena.tournament.entrant import Entrant
 from arena.tournament.outcome import Outcome, agent_arrays
@@ -46,10 +46,11 @@ def check_compiled_is_interpreted(entrant: Entrant) -> None:
     if not hasattr(entrant.agent, "_fields"):
         raise NotApplicableError("it is no NamedTuple, so it runs interpreted")
     try:
-        compiled = compiled_driver.race(_CONDITIONS, run)
+        compiled_driver.prepare(_CONDITIONS, run, _create(entrant))
     except CompilationError as error:
         raise NotApplicableError(f"it runs interpreted: {error}") from None
-    _same(_race(entrant), compiled, "the compiled run")
+    (compiled,) = compiled_driver.drive(_CONDITIONS, [run])
+    _same(_finished(compiled), _race(entrant), "the compiled run")
 
 
 def check_independent_of_others(entrant: Entrant) -> None:
@@ -59,7 +60,7 @@ def check_independent_of_others(entrant: Entrant) -> None:
     random.seed(1)
     np.random.seed(1)  # noqa: NPY002 (agents must not use it)
     state, legacy = random.getstate(), np.random.get_state()[1].copy()  # type: ignore[index] # noqa: NPY002 (a tuple; see above)
-    together = pettingzoo_driver.race(_CONDITIONS, [Run(other, 0), Run(entrant, 0)])[1]
+    together = pettingzoo_driver.drive(_CONDITIONS, [Run(other, 0), Run(entrant, 0)])[1]
     _same(alone, together, "a run beside another entrant, with other global random numbers,")
     unused = random.getstate() == state and np.array_equal(np.random.get_state()[1], legacy)  # type: ignore[index] # noqa: NPY002 (a tuple; see above)
     _hold(unused, "it draws from the global random numbers; all must come from the rng that it is given")
@@ -114,8 +115,8 @@ def check_survives_hostile_transitions(entrant: Entrant) -> None:
     """1,000 transitions that no hill makes leave no NaN, index no array beyond its end, and raise nothing."""
     agent, rng = _create(entrant), np.random.default_rng(4)
     places = list(_observations())
-    ears = listener(agent)
-    ears.begin_episode()
+    hook = episode_hook(agent)
+    hook.begin_episode()
     for step in range(_HOSTILE):
         here, there = (places[rng.integers(len(places))] for _ in range(2))
         action = _valid(agent.act(here, step / _HOSTILE, rng), f"act({here})")
@@ -123,7 +124,7 @@ def check_survives_hostile_transitions(entrant: Entrant) -> None:
         ended = bool(rng.random() < 0.05)
         agent.learn(here, action, -1.0, there, following, ended)
         if ended or rng.random() < 0.02:
-            ears.begin_episode()
+            hook.begin_episode()
     for name, array in agent_arrays(agent).items():
         if np.issubdtype(array.dtype, np.inexact):
             _hold(not np.isnan(array).any(), f"{name} has NaN after hostile transitions")
@@ -145,7 +146,7 @@ CHECKS: tuple[Check, ...] = (
 
 def _race(entrant: Entrant, seed: int = 7) -> Outcome:
     conditions = Conditions(_HILL, _CONDITIONS.training, _CONDITIONS.evaluation, seed)
-    (outcome,) = pettingzoo_driver.race(conditions, [Run(entrant, 0)])
+    (outcome,) = pettingzoo_driver.drive(conditions, [Run(entrant, 0)])
     return _finished(outcome)
 
 
@@ -179,7 +180,7 @@ def _drive(entrant: Entrant) -> tuple[Any, list[tuple[Any, int]]]:
     agent, rng, steps = _create(entrant), np.random.default_rng(5), []
     for _ in range(3):
         state = _HILL.reset(rng)
-        listener(agent).begin_episode()
+        episode_hook(agent).begin_episode()
         action = agent.act(np.array(_HILL.observe(state)), 0.5, rng)
         for _ in range(150):
             before = np.array(_HILL.observe(state))

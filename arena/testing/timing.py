@@ -1,13 +1,12 @@
 """How long a step of an agent's learning takes, beside the built-in Q-learning's."""
 
 import time
-from typing import Any
 
 import numpy as np
 
 from agents import QLearning
 from arena.execution import pettingzoo_driver
-from arena.execution.loops import listener, train
+from arena.execution.loops import train, training_loop
 from arena.tournament.conditions import Conditions, Evaluation, Run, Training
 from arena.tournament.entrant import Entrant
 from envs import Hill
@@ -41,19 +40,17 @@ def _measure(entrant: Entrant, seconds: float) -> float:
 
 def _compiled(entrant: Entrant) -> tuple[float, int]:
     """Seconds and steps of a short training."""
-    hill, lengths = Hill(), np.zeros(_EPISODES, np.int64)
-    agent: Any = entrant.create(hill, np.random.default_rng(0))
-    drawn = np.random.default_rng(1), np.random.default_rng(2)
-    driven = (hill, agent, listener(agent), hill.n_actions)
-    arguments = (*driven, 0, _EPISODES, _EPISODES, _MAX_STEPS, *drawn, lengths)
-    loop = compile_loop(train, *arguments)
+    conditions = Conditions(Hill(), Training(_EPISODES, _MAX_STEPS), Evaluation(1, 1), 0)
+    agent = entrant.create(conditions.hill, np.random.default_rng(0))
+    loop = training_loop(conditions, Run(entrant, 0), agent)
+    kernel = compile_loop(train, loop, 0, _EPISODES)
     began = time.perf_counter()
-    loop(*arguments)
-    return time.perf_counter() - began, int(lengths.sum())
+    kernel(loop, 0, _EPISODES)
+    return time.perf_counter() - began, int(loop.lengths.sum())
 
 
 def _interpreted(entrant: Entrant) -> tuple[float, int]:
     conditions = Conditions(Hill(), Training(5, _MAX_STEPS), Evaluation(1, 1), 0)
     began = time.perf_counter()
-    (outcome,) = pettingzoo_driver.race(conditions, [Run(entrant, 0)])
+    (outcome,) = pettingzoo_driver.drive(conditions, [Run(entrant, 0)])
     return time.perf_counter() - began, outcome.iterations or 1

@@ -1,12 +1,9 @@
 """What is raced: the frozen, validated description of a tournament."""
 
-import logging
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
-
-import numpy as np
 
 from arena.common.html import represent
 from arena.common.plain import plain
@@ -17,8 +14,6 @@ from arena.tournament.readings import READINGS
 from envs import Hill
 from envs.foundation.checks import choice, instance, number
 from envs.foundation.errors import InvalidTypeError, InvalidValueError
-
-_log = logging.getLogger("arena")
 
 
 @dataclass(frozen=True)
@@ -45,7 +40,7 @@ class Tournament:
         leaders: how many of the first places adaptive replicates decide.
 
     Raises:
-        TypeError, ValueError: when an argument breaks its rule, or an entrant cannot be made.
+        TypeError, ValueError: when an argument breaks its rule.
     """
 
     entrants: tuple[Entrant, ...]
@@ -79,14 +74,6 @@ class Tournament:
         entrants = tuple(map(reading.read, _entrants(self.entrants)))
         object.__setattr__(self, "entrants", entrants)
         self._check_adaptive()
-        for entrant in entrants:
-            try:
-                entrant.create(hill, np.random.default_rng(0))
-            except (TypeError, ValueError) as error:
-                problem = InvalidTypeError if isinstance(error, TypeError) else InvalidValueError
-                raise problem(f"entrant {entrant.name!r}: {error}") from error
-            except Exception:  # no bad parameter but a bad agent: its runs will fail and tell
-                _log.debug("entrant %r cannot be created", entrant.name, exc_info=True)
 
     def _check_adaptive(self) -> None:
         confidence = number("confidence", self.confidence, 0, 1, above=True)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arena.common.parallel import imap
+from arena.common.parallel import parallel_map_unordered
 from envs.foundation.checks import integer
 from envs.foundation.errors import InvalidValueError
 from envs.foundation.streams import stream
@@ -146,7 +146,7 @@ def fit_all(lengths: ArrayLike, seed: int = 0, bootstraps: int = BOOTSTRAPS, n_j
         )
     seed, bootstraps = integer("seed", seed, 0), integer("bootstraps", bootstraps, 1)
     tasks = [(family, x, seed, bootstraps) for family in FAMILIES]
-    return sorted(imap(n_jobs, _fit, tasks), key=lambda fit: fit.aic)
+    return sorted(parallel_map_unordered(n_jobs, _fit, tasks), key=lambda fit: fit.aic)
 
 
 def _fit(family: Family, x: Floats, seed: int, bootstraps: int) -> Fit:

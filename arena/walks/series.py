@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arena.common.parallel import imap
+from arena.common.parallel import parallel_map_unordered
 from arena.common.plain import plain
 from arena.walks.loop import TOGETHER, walk
 from envs import Hill
@@ -102,7 +102,7 @@ def random_walk(
             for first in range(0, total, TOGETHER)
         ]
         done = 0
-        for part in imap(n_jobs, _walks, tasks):
+        for part in parallel_map_unordered(n_jobs, _walks, tasks):
             parts[part[0]] = part
             done += len(part[1])
             if progress:

@@ -38,12 +38,12 @@ class InvalidTypeError(ArenaError, TypeError):
 
 
 @contextmanager
-def naming(subject: str, kind: type[Exception] = ArenaError) -> Iterator[None]:
+def naming(subject: str, kinds: tuple[type[Exception], ...] = (ArenaError,)) -> Iterator[None]:
     """Begin the messages of errors with ``subject``, such as a file or an entrant.
 
     Args:
         subject: what they are about.
-        kind: of the errors; another than ``ArenaError`` where the code is somebody else's.
+        kinds: of the errors; by default ``ArenaError``, others where the code is somebody else's.
 
     Raises:
         InvalidTypeError: in place of an error that is a ``TypeError``.
@@ -51,6 +51,6 @@ def naming(subject: str, kind: type[Exception] = ArenaError) -> Iterator[None]:
     """
     try:
         yield
-    except kind as error:
+    except kinds as error:
         named = InvalidTypeError if isinstance(error, TypeError) else InvalidValueError
         raise named(f"{subject}: {error}") from error

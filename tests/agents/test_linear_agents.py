@@ -18,7 +18,7 @@ from agents.algorithms.watkins_q_lambda import WatkinsQLambda
 from agents.discretization import TileCoding
 from agents.learning.traces import NEGLIGIBLE
 from arena import Entrant, Evaluation, Tournament, Training, run
-from arena.execution.loops import listener, train
+from arena.execution.loops import TrainingLoop, episode_hook, train
 from envs import Hill
 from envs.compilation import cache_directory, compile_loop
 from envs.compilation.reachable import Reached
@@ -487,7 +487,8 @@ def test_both_drivers_get_the_same_bits(hill: Hill) -> None:
 def test_compiled_agents_allocate_nothing(cls: type[Any], given: dict[str, Any]) -> None:
     hill, agent = Hill(), cls.create(Hill(), **given)
     streams = np.random.default_rng(1), np.random.default_rng(2)
-    arguments = (hill, agent, listener(agent), 3, 0, 2, 2, 50, *streams, np.zeros(2, np.int64))
+    loop = TrainingLoop(hill, agent, episode_hook(agent), 3, 2, 50, *streams, np.zeros(2, np.int64))
+    arguments = (loop, 0, 2)
     compile_loop(train, *arguments)
     folder, fingerprint = cache_directory(), Reached(train, *arguments).fingerprint()
     assert folder is not None

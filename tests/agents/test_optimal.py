@@ -17,7 +17,7 @@ from agents.optimal.conservative_cells import cell_of, fewest_steps, image
 from agents.optimal.lower_bound import departure, lower_bound
 from agents.optimal.relaxed_car import MOST, Relaxed, Spacing, patterns, spacing
 from arena import Entrant
-from arena.execution.loops import evaluate
+from arena.execution.loops import EvaluationLoop, evaluate
 from arena.testing import parametrize_with_checks
 from envs import Hill
 from envs.compilation import compile_loop
@@ -395,8 +395,8 @@ def test_what_is_no_hill_is_refused() -> None:
 def driven(hill: Hill, agent: Any, positions: Floats) -> NDArray[np.int64]:
     starts = np.stack([positions, np.zeros_like(positions)], axis=1)
     lengths, reached = np.zeros(len(starts), np.int64), np.zeros(len(starts), np.bool_)
-    arguments = (hill, agent, 3, starts, 200, lengths, reached)
-    compile_loop(evaluate, *arguments)(*arguments)
+    loop = EvaluationLoop(hill, agent, 3, starts, 200, lengths, reached)
+    compile_loop(evaluate, loop)(loop)
     assert reached.all()
     return lengths
 

@@ -8,7 +8,7 @@ from agents.algorithms.value_iteration import GridPlanner, total_steps
 from agents.discretization import EdgeGrid, Voronoi
 from agents.optimal import optimal_steps
 from arena import Entrant
-from arena.execution.loops import evaluate
+from arena.execution.loops import EvaluationLoop, evaluate
 from arena.testing import parametrize_with_checks
 from envs import Hill
 from envs.compilation import compile_loop
@@ -20,8 +20,8 @@ def lengths(agent: Any) -> NDArray[np.int64]:
     """Steps of greedy drives from ``STARTS``; all reach the goal."""
     starts = np.stack([STARTS, np.zeros_like(STARTS)], axis=1)
     steps, reached = np.zeros(len(starts), np.int64), np.zeros(len(starts), np.bool_)
-    arguments = (Hill(), agent, 3, starts, 500, steps, reached)
-    compile_loop(evaluate, *arguments)(*arguments)
+    loop = EvaluationLoop(Hill(), agent, 3, starts, 500, steps, reached)
+    compile_loop(evaluate, loop)(loop)
     assert reached.all()
     return steps
 

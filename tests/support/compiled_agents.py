@@ -7,7 +7,7 @@ from bits import bits_of
 
 from agents import Softmax, UpperConfidence
 from arena import Entrant, Evaluation, Tournament, Training, run
-from arena.execution.loops import listener, train
+from arena.execution.loops import TrainingLoop, episode_hook, train
 from envs import Hill
 from envs.compilation import cache_directory, compile_loop
 from envs.compilation.reachable import Reached
@@ -41,7 +41,8 @@ def assert_allocates_nothing(cls: type[Any], parameters: dict[str, Any]) -> None
     """The kernel of training is the one without reference counts."""
     agent = Entrant("it", cls, **parameters).create(NEAR, np.random.default_rng(0))
     streams = np.random.default_rng(1), np.random.default_rng(2)
-    arguments = (NEAR, agent, listener(agent), 3, 0, 2, 2, 50, *streams, np.zeros(2, np.int64))
+    loop = TrainingLoop(NEAR, agent, episode_hook(agent), 3, 2, 50, *streams, np.zeros(2, np.int64))
+    arguments = (loop, 0, 2)
     compile_loop(train, *arguments)
     folder, fingerprint = cache_directory(), Reached(train, *arguments).fingerprint()
     assert folder is not None

@@ -138,7 +138,7 @@ def test_an_interruption_leaves_what_was_finished_and_says_so(
         yield function(*tasks[0])
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("arena.walks.series.imap", interrupted)
+    monkeypatch.setattr("arena.walks.series.parallel_map_unordered", interrupted)
     assert main(["walk", "--hill", "near.toml", "--episodes", "60", "--out", "walk.json", "--json"]) == 130
     printed = capsys.readouterr()
     assert printed.err == "arena: interrupted after 25 of 60 episodes (explicit)\n"
@@ -150,7 +150,7 @@ def test_an_interruption_leaves_what_was_finished_and_says_so(
 def test_an_interruption_of_the_fits_leaves_the_walks(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("arena.walks.distributions.imap", interrupted_at_once)
+    monkeypatch.setattr("arena.walks.distributions.parallel_map_unordered", interrupted_at_once)
     assert main(["walk", "--hill", "near.toml", "--episodes", "20", "--jobs", "1", "--json"]) == 130
     printed = capsys.readouterr()
     assert printed.err == "arena: interrupted while distributions were fitted\n"
@@ -160,7 +160,7 @@ def test_an_interruption_of_the_fits_leaves_the_walks(
 def test_an_interruption_before_anything_was_finished(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("arena.walks.series.imap", interrupted_at_once)
+    monkeypatch.setattr("arena.walks.series.parallel_map_unordered", interrupted_at_once)
     assert main(["walk", "--episodes", "60", "--out", "walk.json"]) == 130
     printed = capsys.readouterr()
     assert (printed.out, printed.err) == ("", "arena: interrupted after 0 of 60 episodes (semi-implicit)\n")

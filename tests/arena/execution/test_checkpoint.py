@@ -13,8 +13,9 @@ from hand_made_agents import Leaky, Scripted, race_of
 
 from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
 from arena import Entrant, load, run
-from arena.execution import compiled_driver, pettingzoo_driver
+from arena.execution import compiled_driver
 from arena.execution.checkpoint import Checkpoint, file_of, savable
+from arena.execution.worker import DRIVERS
 from arena.results import digest
 from arena.tournament import Conditions, Run
 from arena.tournament.outcome import Outcome
@@ -29,9 +30,8 @@ AGENTS = {
 
 
 def race(driver: str, conditions: Conditions, one: Run) -> Outcome:
-    if driver == "compiled":
-        return compiled_driver.race(conditions, one)
-    return pettingzoo_driver.race(conditions, [one])[0]
+    (outcome,) = DRIVERS[driver](conditions, [one])
+    return outcome
 
 
 @pytest.mark.parametrize("entrant", AGENTS.values(), ids=AGENTS)

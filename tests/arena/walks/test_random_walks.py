@@ -134,7 +134,7 @@ def test_after_an_interruption_no_episode_is_missing_among_those_that_are_left(
         raise KeyboardInterrupt
 
     expected = random_walk(25, NEAR, n_jobs=1)
-    monkeypatch.setattr("arena.walks.series.imap", out_of_order)
+    monkeypatch.setattr("arena.walks.series.parallel_map_unordered", out_of_order)
     with pytest.raises(InterruptedWalk) as stopped:
         random_walk(100, NEAR)
     assert same(stopped.value.walk, expected)

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from arena import deprecated
 from arena.common import html
 from envs.foundation.errors import ArenaError
 from envs.foundation.lazy import lazily
@@ -56,4 +57,5 @@ __all__ = [
     "sweep",
 ]
 
+deprecated.install()
 html.registrars.add("arena.report.notebook")

@@ -137,8 +137,8 @@ def _print_changes(
 
     changes = regressions(new, old, amount, by, confidence, relative=relative)
     regressed = any(change.regressed for change in changes)
-    names, names_before = ({entrant["name"] for entrant in file.config["entrants"]} for file in (new, old))
-    only_new, only_old = sorted(names - names_before), sorted(names_before - names)
+    only_new = sorted(new.entrants.keys() - old.entrants.keys())
+    only_old = sorted(old.entrants.keys() - new.entrants.keys())
     if as_json:
         report = {"by": by, "regressed": regressed, "only_new": only_new, "only_baseline": only_old}
         entrants = [change.to_dict() for change in changes]

@@ -19,7 +19,7 @@ def comparison_text(comparison: Duel) -> Text:
         ("difference of the means", comparison.difference, score.decimals),
         (f"probability that {a} is better", comparison.probability, 2),
     ]
-    lines = [f"{a} and {b} by {score.words}: {comparison.replicates} replicates."]
+    lines = [f"{a} and {b} by {score.description}: {comparison.replicates} replicates."]
     width = max(len(label) for label, *_ in rows)
     for label, estimate, digits in rows:
         value, low, high = (f"{number:,.{digits}f}" for number in estimate)

@@ -7,7 +7,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from arena.reproduction.published import PAPER, REASONABLE, Summary
+from arena.reproduction.published_values import PAPER, REASONABLE, Summary
 from arena.reproduction.walk_study import WalkStudy
 
 

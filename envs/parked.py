@@ -7,6 +7,8 @@ from pettingzoo.utils import BaseParallelWrapper
 
 from envs.foundation.checks import choice
 
+__all__ = ["Parked"]
+
 FLAGS = ("kept", "together")
 
 

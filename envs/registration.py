@@ -1,14 +1,19 @@
 """The environments by their names, for ``gymnasium.make`` and ``pettingzoo.make``.
 
-Neither package is imported for that, they take time: each is told when it is imported itself.
+Neither package is imported for that, they take time: each is told when it is imported itself. Nor is
+``importlib.abc``, whose classes a finder and a loader need not inherit from: it takes a tenth of what ``arena
+--help`` may.
 """
 
 import sys
 from collections.abc import Callable, Sequence
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from importlib.abc import Loader
 
 
 def register_with_gymnasium() -> None:
@@ -44,7 +49,7 @@ def when_imported(package: str, action: Callable[[], None]) -> None:
         sys.meta_path.insert(0, _Watcher(package, action))
 
 
-class _Watcher(MetaPathFinder):
+class _Watcher:
     """Finds one package as it would be found without it, and calls the action after its import."""
 
     def __init__(self, package: str, action: Callable[[], None]) -> None:
@@ -58,14 +63,14 @@ class _Watcher(MetaPathFinder):
         sys.meta_path.remove(self)
         spec = find_spec(fullname)
         if spec and spec.loader:
-            spec.loader = _Then(spec.loader, self.action)
+            spec.loader = _Then(spec.loader, self.action)  # type: ignore[assignment]  # by its methods
         return spec
 
 
-class _Then(Loader):
+class _Then:
     """Loads as another loader does, then calls the action."""
 
-    def __init__(self, loader: Loader, action: Callable[[], None]) -> None:
+    def __init__(self, loader: "Loader", action: Callable[[], None]) -> None:
         self.loader, self.action = loader, action
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:

@@ -25,7 +25,7 @@ from c_loops import built
 
 from arena import random_walk
 from arena.reproduction import PAPER
-from arena.reproduction.published import PAPER_SECONDS
+from arena.reproduction.published_values import PAPER_SECONDS
 from envs.foundation.streams import stream
 
 MAX_STEPS = 1_000_000

@@ -1,8 +1,10 @@
-"""Exit codes, and what is said on stderr."""
+"""Exit codes, and what commands print with: results on stdout, all else on stderr."""
 
 import sys
-import traceback
-from importlib import metadata
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 SOME_FAILED = 1
 BAD_INPUT = 2
@@ -14,6 +16,13 @@ class InterruptedRunError(Exception):
     """Ctrl-C while runs were written to a file, the only argument."""
 
 
+def terminal() -> "Console":
+    """Return the console on stdout; it colours no numbers and breaks no lines."""
+    from rich.console import Console
+
+    return Console(highlight=False, soft_wrap=True)
+
+
 def say(sentence: str) -> None:
     """Print a sentence on stderr."""
     print(f"arena: {sentence}", file=sys.stderr)
@@ -21,6 +30,9 @@ def say(sentence: str) -> None:
 
 def say_bug() -> None:
     """Tell of the exception that is being handled: it is a mistake of ours, and where to report it."""
+    import traceback
+    from importlib import metadata
+
     traceback.print_exc()
     try:
         urls = metadata.metadata("mountain-car-arena").get_all("Project-URL", [])

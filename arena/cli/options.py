@@ -6,27 +6,13 @@ from typing import Annotated
 
 import typer
 
-from arena.plugins.loading import load_plugin
-
+File = Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")]
+Confidence = Annotated[float, typer.Option(help="Of intervals and tests.", metavar="C")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 Plugins = Annotated[
     list[Path] | None,
     typer.Option("--plugin", help="A Python file with agents; may be given again.", metavar="FILE"),
 ]
-
-
-def load_plugins(paths: list[Path] | None) -> None:
-    """Load each.
-
-    Raises:
-        PluginError: when one cannot be loaded.
-    """
-    for path in paths or ():
-        load_plugin(path)
-
-
-File = Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")]
-Confidence = Annotated[float, typer.Option(help="Of intervals and tests.", metavar="C")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
 class By(StrEnum):
@@ -37,3 +23,15 @@ class By(StrEnum):
     LENGTH = "length"
     REGRET = "regret"
     ITERATIONS = "iterations"
+
+
+def load_plugins(paths: list[Path] | None) -> None:
+    """Load each.
+
+    Raises:
+        PluginError: when one cannot be loaded.
+    """
+    from arena.plugins.loading import load_plugin
+
+    for path in paths or ():
+        load_plugin(path)

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from arena.cli.options import By, File
-from arena.results.results import Results, load
-from envs.foundation.checks import choice, integer
 from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -17,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from arena.analysis.standings import Leaderboard
-
+    from arena.results.results import Results
 
 SUFFIXES = (".png", ".svg", ".pdf")
 _SOME = 5  # entrants of a picture of lines, unless they are named
@@ -56,6 +54,9 @@ def plot(
     dpi: Annotated[int, typer.Option(help="Dots an inch of a .png.", metavar="N")] = 150,
 ) -> None:
     """Draw a figure of the paper, or one beyond it, from a results file."""
+    from arena.results.results import load
+    from envs.foundation.checks import choice, integer
+
     out = out or Path(f"{kind.value}.png")
     choice("suffix of --out", out.suffix.lower(), SUFFIXES)
     integer("--dpi", dpi, 20)
@@ -65,21 +66,19 @@ def plot(
     print(out)
 
 
-def _learning(results: Results, named: list[str] | None, _replicate: int, _by: str) -> "Figure":
+def _learning(results: "Results", named: list[str] | None, _replicate: int, _by: str) -> "Figure":
     from arena.figures.learning import draw_learning
 
     return _figure_of(draw_learning(results, named or results.best(_SOME)))
 
 
-def _regret(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
+def _regret(results: "Results", named: list[str] | None, replicate: int, _by: str) -> "Figure":
     from arena.analysis.regret import fewest_steps
     from arena.figures.scores import draw_regret
 
     names = named or results.best(_SOME)
-    for name in names:
-        results.finished_arrays(
-            name, replicate
-        )  # is there such a run? before the search, which takes seconds
+    for name in names:  # is there such a run? before the search, which takes seconds
+        results.finished_arrays(name, replicate)
     starts = results.conditions.start_states(replicate)[:, 0]
     fewest = fewest_steps(results, [replicate])[replicate]
     return _figure_of(draw_regret(results, names, replicate, starts, fewest))
@@ -88,7 +87,7 @@ def _regret(results: Results, named: list[str] | None, replicate: int, _by: str)
 def _of_one(name: str) -> Callable[..., "Figure"]:
     """What draws the policy of one entrant by this function of ``arena.figures.policy``."""
 
-    def draw(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
+    def draw(results: "Results", named: list[str] | None, replicate: int, _by: str) -> "Figure":
         from arena.figures import policy as figures_policy
 
         names = named or results.best(1)
@@ -101,7 +100,7 @@ def _of_one(name: str) -> Callable[..., "Figure"]:
     return draw
 
 
-def _sweep(results: Results, named: list[str] | None, _replicate: int, _by: str) -> "Figure":
+def _sweep(results: "Results", named: list[str] | None, _replicate: int, _by: str) -> "Figure":
     from arena.analysis.scores import scores_of
     from arena.figures.sweep import draw_sweep
 
@@ -112,7 +111,7 @@ def _sweep(results: Results, named: list[str] | None, _replicate: int, _by: str)
 def _of_board(name: str) -> Callable[..., "Figure"]:
     """What draws the leaderboard by this function of ``arena.figures.scores``."""
 
-    def draw(results: Results, named: list[str] | None, _replicate: int, by: str) -> "Figure":
+    def draw(results: "Results", named: list[str] | None, _replicate: int, by: str) -> "Figure":
         from arena.analysis.standings import leaderboard
         from arena.figures import scores as figures_scores
 
@@ -122,7 +121,7 @@ def _of_board(name: str) -> Callable[..., "Figure"]:
     return draw
 
 
-def _pairs(results: Results, named: list[str] | None, _replicate: int, by: str) -> "Figure":
+def _pairs(results: "Results", named: list[str] | None, _replicate: int, by: str) -> "Figure":
     from arena.analysis.scores import scores_of
     from arena.analysis.standings import leaderboard
     from arena.figures.scores import draw_pairs

@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from arena.cli.options import File
-from arena.results.results import load
 
 
 def race(
@@ -27,6 +26,7 @@ def race(
 ) -> None:
     """Race trained cars from one start, the optimal drive beside them as a ghost."""
     from arena.figures.film import SUFFIXES, race, save_race, show
+    from arena.results.results import load
     from envs.foundation.checks import choice
 
     if out is not None:

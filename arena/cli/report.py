@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from arena.cli.options import By, Confidence, File
-from arena.results.results import load
 
 
 def report(
@@ -20,6 +19,7 @@ def report(
 ) -> None:
     """Write all of a results file as one HTML page that needs no network."""
     from arena.report.page import write_report
+    from arena.results.results import load
 
     with load(file) as results:
         out = out or page_of(file)

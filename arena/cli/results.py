@@ -5,16 +5,16 @@ import re
 import sys
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.text import Text
 
-from arena.analysis.scores import SCORES
+from arena.cli.console import terminal
 from arena.cli.options import AsJson, By, Confidence, File
-from arena.results.results import Results, load
 from envs.foundation.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from arena.results.results import Results
 
 REGRESSED = 1
 
@@ -27,6 +27,8 @@ def show(
     as_csv: Annotated[bool, typer.Option("--csv", help="Print a line an entrant, with commas.")] = False,
 ) -> None:
     """Print the leaderboard of a results file; of the paper's tournament its tables, unless --by is given."""
+    from arena.results.results import load
+
     if as_json and as_csv:
         raise InvalidValueError("--json and --csv must not be given together")
     with load(file) as results, _patience(by):
@@ -34,28 +36,28 @@ def show(
 
 
 def print_results(
-    results: Results,
+    results: "Results",
     by: str | None = None,
     confidence: float = 0.95,
     *,
     as_json: bool = False,
     as_csv: bool = False,
 ) -> None:
-    """What ``arena run`` and ``arena show`` print on stdout."""
+    """Print what ``arena run`` and ``arena show`` say of results, on stdout."""
     from arena.analysis.standings import leaderboard
     from arena.report.sparklines import can_show, pictures
     from arena.report.tables import render
-    from arena.reproduction.tables import compare as paper_s
+    from arena.reproduction.tables import compare as compare_with_paper
 
     if as_json:
         board = leaderboard(results, by or "steps", confidence).to_dict()
-        paper = paper_s(results)
+        paper = compare_with_paper(results)
         extra = {"paper": paper.to_dict()} if paper else {}
         print(json.dumps({**results.to_dict(), "leaderboard": board, **extra}, allow_nan=False))
     elif as_csv:
         leaderboard(results, by or "steps", confidence).frame().to_csv(sys.stdout, index=False)
     else:
-        console = Console(highlight=False, soft_wrap=True)
+        console = terminal()
         console.print(render(results, by, confidence))
         if can_show(console):
             console.print(pictures(results))
@@ -78,11 +80,13 @@ def compare(
     as_json: AsJson = False,
 ) -> None:
     """Compare two entrants, or a file with a baseline: exit with 1 if an entrant got worse beyond chance."""
+    from arena.results.results import load
+
     if (baseline is None) == (a is None or b is None) or (baseline is not None and a is not None):
         raise InvalidValueError("compare must be given two entrants, or --baseline and none")
     with load(file) as results, _patience(by):
         if baseline is None:
-            _print_duel(results, str(a), str(b), by.value, confidence, as_json=as_json)
+            _print_comparison(results, str(a), str(b), by.value, confidence, as_json=as_json)
             return
         amount, relative = _amount(max_regression)
         with load(baseline) as old:
@@ -93,10 +97,13 @@ def compare(
 
 def _patience(by: By | None) -> AbstractContextManager[Any]:
     """Says on a terminal what takes so long."""
-    console = Console(stderr=True)
-    if by is not By.REGRET or not console.is_terminal:
-        return nullcontext()
-    return console.status("searching the fewest steps from each start of the test")
+    if by is By.REGRET:
+        from rich.console import Console
+
+        console = Console(stderr=True)
+        if console.is_terminal:
+            return console.status("searching the fewest steps from each start of the test")
+    return nullcontext()
 
 
 def _amount(text: str) -> tuple[float, bool]:
@@ -108,60 +115,37 @@ def _amount(text: str) -> tuple[float, bool]:
     return (float(text[:-1]) / 100.0, True) if text.endswith("%") else (float(text), False)
 
 
-def _print_duel(results: Results, a: str, b: str, by: str, confidence: float, *, as_json: bool) -> None:
+def _print_comparison(
+    results: "Results", a: str, b: str, by: str, confidence: float, *, as_json: bool
+) -> None:
     from arena.analysis.pairwise import compare_entrants
+    from arena.report.comparisons import comparison_text
 
-    duel = compare_entrants(results, a, b, by, confidence)
+    comparison = compare_entrants(results, a, b, by, confidence)
     if as_json:
-        print(json.dumps(duel.to_dict(), allow_nan=False))
-        return
-    places = SCORES[by].decimals
-    rows = [
-        (f"{a}, mean", duel.means[0], places),
-        (f"{b}, mean", duel.means[1], places),
-        (f"{a}, interquartile mean", duel.interquartile[0], places),
-        (f"{b}, interquartile mean", duel.interquartile[1], places),
-        ("difference of the means", duel.difference, places),
-        (f"probability that {a} is better", duel.probability, 2),
-    ]
-    _print(f"{a} and {b} by {SCORES[by].description}: {duel.replicates} replicates.")
-    width = max(len(label) for label, *_ in rows)
-    for label, estimate, digits in rows:
-        value, low, high = (f"{number:,.{digits}f}" for number in estimate)
-        _print(f"  {label:{width}}  {value:>9}  [{low}, {high}]")
-    _print(f"Paired permutation test: p = {duel.p_value:.2g}. {duel.verdict}")
+        print(json.dumps(comparison.to_dict(), allow_nan=False))
+    else:
+        terminal().print(comparison_text(comparison))
 
 
 def _print_changes(
-    new: Results, old: Results, amount: float, relative: bool, by: str, confidence: float, as_json: bool
+    new: "Results", old: "Results", amount: float, relative: bool, by: str, confidence: float, as_json: bool
 ) -> bool:
+    """Print what has changed since the baseline; whether any entrant got worse."""
     from arena.analysis.pairwise import regressions
+    from arena.report.comparisons import changes_text
 
     changes = regressions(new, old, amount, by, confidence, relative=relative)
     regressed = any(change.regressed for change in changes)
-    names = [{*results.entrants} for results in (new, old)]
-    gone, come = sorted(names[1] - names[0]), sorted(names[0] - names[1])
+    only_new = sorted(new.entrants.keys() - old.entrants.keys())
+    only_old = sorted(old.entrants.keys() - new.entrants.keys())
     if as_json:
-        told: dict[str, Any] = {"by": by, "regressed": regressed, "only_new": come, "only_baseline": gone}
-        print(json.dumps({**told, "entrants": [one.to_dict() for one in changes]}, allow_nan=False))
-        return regressed
-    places = SCORES[by].decimals
-    width = max(len(change.entrant) for change in changes)
-    for one in changes:
-        verdict = "worse beyond chance" if one.regressed else "ok"
-        interval = f"[{one.worse.low:+,.{places}f}, {one.worse.high:+,.{places}f}]"
-        _print(
-            f"{one.entrant:{width}}  {one.before:,.{places}f} -> {one.after:,.{places}f}, worse by "
-            f"{one.worse.value:+,.{places}f} {interval}, p = {one.p_value:.2g}: {verdict}"
-        )
-    for where, missing in (("the baseline", gone), ("the new file", come)):
-        if missing:
-            _print(f"Only in {where}: {', '.join(missing)}.")
+        report = {"by": by, "regressed": regressed, "only_new": only_new, "only_baseline": only_old}
+        entrants = [change.to_dict() for change in changes]
+        print(json.dumps({**report, "entrants": entrants}, allow_nan=False))
+    else:
+        terminal().print(changes_text(changes, by, only_new, only_old))
     return regressed
-
-
-def _print(line: str) -> None:
-    Console(highlight=False, soft_wrap=True).print(Text(line))
 
 
 def add_commands(app: typer.Typer) -> None:

@@ -5,7 +5,7 @@ import sys
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,18 +14,18 @@ from arena.cli.options import Plugins, load_plugins
 from arena.cli.progress import progress_bar
 from arena.cli.report import page_of
 from arena.cli.results import print_results
-from arena.execution.runner import run as run_tournament
-from arena.results.results import Results, load
-from arena.statistics.sequential import ADAPTIVE
-from arena.tournament.builtin import BUILT_IN
-from arena.tournament.configuration import load_tournament
-from arena.tournament.tournament import Tournament
 from envs.foundation.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from arena.results.results import Results
+    from arena.tournament.tournament import Tournament
 
 _BUILT_IN_TAKE = {"replicates", "seed", "reading"}
 
 
 def _replicates(text: str) -> int | str:
+    from arena.statistics.sequential import ADAPTIVE
+
     if text != ADAPTIVE and not re.fullmatch(r"-?\d{1,9}", text):
         raise typer.BadParameter(f"it must be a number or {ADAPTIVE}, got {text!r}")
     return text if text == ADAPTIVE else int(text)
@@ -101,6 +101,7 @@ def run(
 def digest(file: Annotated[Path, typer.Argument(help="Results file.", metavar="FILE")]) -> None:
     """Print a hash of everything in a results file but timings."""
     from arena.results.digests import digest as digest_of
+    from arena.results.results import load
 
     with load(file) as results:
         print(digest_of(results))
@@ -113,12 +114,13 @@ def verify(
 ) -> None:
     """Run a sample again, with the other driver and other workers; exit with 1 if a bit differs."""
     from arena.execution.verification import verify as differences
+    from arena.results.results import load
 
     load_plugins(plugin)
     with load(file) as results:
-        found = next(differences(results, runs), None)
-    if found:
-        print(found)
+        difference = next(differences(results, runs), None)
+    if difference:
+        print(difference)
         raise typer.Exit(SOME_FAILED)
     print("no difference")
 
@@ -129,7 +131,10 @@ def _default_file(name: str) -> Path:
     return Path("runs") / f"{safe}.sqlite"
 
 
-def _tournament(name: str, changes: dict[str, Any]) -> Tournament:
+def _tournament(name: str, changes: dict[str, Any]) -> "Tournament":
+    from arena.tournament.builtin import BUILT_IN
+    from arena.tournament.configuration import load_tournament
+
     if name in BUILT_IN:
         built = BUILT_IN[name](**{key: changes[key] for key in _BUILT_IN_TAKE & changes.keys()})
         return replace(built, **{key: changes[key] for key in changes.keys() - _BUILT_IN_TAKE})
@@ -141,12 +146,14 @@ def _tournament(name: str, changes: dict[str, Any]) -> Tournament:
     return load_tournament(name, **changes)
 
 
-def _run(tournament: Tournament, out: Path, jobs: int, driver: str) -> Results:
+def _run(tournament: "Tournament", out: Path, jobs: int, driver: str) -> "Results":
+    from arena.execution.runner import run as run_tournament
+
     with progress_bar(tournament.name) as progress:
         return run_tournament(tournament, out, jobs, driver, progress=progress)
 
 
-def _write_page(results: Results, page: Path) -> None:
+def _write_page(results: "Results", page: Path) -> None:
     from arena.report.page import write_report
 
     write_report(results, page)

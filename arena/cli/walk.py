@@ -1,27 +1,21 @@
 """The command ``arena walk``."""
 
 import json
-import sys
-from collections.abc import Iterator
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich import box
-from rich.console import Console, Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
+from arena.cli.console import INTERRUPTED, say, terminal
+from arena.cli.options import AsJson
 from arena.cli.progress import progress_bar
-from arena.reproduction.published import PAPER, REASONABLE, Summary
-from arena.reproduction.walk_study import WalkStudy, study
-from arena.tournament.hills import find_hill
-from arena.walks.distributions import BOOTSTRAPS
-from arena.walks.series import InterruptedWalk, RandomWalk, random_walk
-from envs import Hill, Integrator
 from envs.foundation.errors import InvalidValueError
 
-INTERRUPTED = 130
+if TYPE_CHECKING:
+    from arena.walks.series import RandomWalk
+    from envs.hill import Hill
+
 _PICTURES = (".png", ".svg", ".pdf")
 
 
@@ -45,9 +39,14 @@ def walk(
         Path | None,
         typer.Option(help="Picture of the hill and the lengths: .png, .svg or .pdf.", metavar="FILE"),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Walk at random to the goal: bounds of the state, lengths of episodes, and their distribution."""
+    from arena.report.walks import render
+    from arena.reproduction.walk_study import study
+    from arena.tournament.hills import find_hill
+    from arena.walks.distributions import BOOTSTRAPS
+
     if jobs == 0:
         raise InvalidValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
     _check_files(out, figure)
@@ -55,22 +54,22 @@ def walk(
     walks, stopped = _walks(_hills(chosen, integrator), episodes, seed, jobs, max_steps)
     if walks:
         try:
-            found = study(walks, 0 if stopped else BOOTSTRAPS, jobs)
+            studied = study(walks, 0 if stopped else BOOTSTRAPS, jobs)
         except KeyboardInterrupt:
-            found, stopped = study(walks, 0), "interrupted while distributions were fitted"
-        told = json.dumps(found.to_dict(), allow_nan=False)
+            studied, stopped = study(walks, 0), "interrupted while distributions were fitted"
+        text = json.dumps(studied.to_dict(), allow_nan=False)
         if out:
-            out.write_text(told + "\n", encoding="utf-8")
+            out.write_text(text + "\n", encoding="utf-8")
         if figure:
             from arena.figures.walks import save_figure
 
-            save_figure(found, figure)
+            save_figure(studied, figure)
         if as_json:
-            print(told)
+            print(text)
         else:
-            Console(highlight=False, soft_wrap=True).print(_render(found, hill))
+            terminal().print(render(studied, hill))
     if stopped:
-        print(f"arena: {stopped}", file=sys.stderr)
+        say(stopped)
         raise typer.Exit(INTERRUPTED)
 
 
@@ -83,16 +82,20 @@ def _check_files(out: Path | None, figure: Path | None) -> None:
             raise InvalidValueError(f"{option} must be a file in a folder that exists, got {str(file)!r}")
 
 
-def _hills(hill: Hill, integrator: str | None) -> list[Hill]:
+def _hills(hill: "Hill", integrator: str | None) -> "list[Hill]":
+    from envs.hill import Integrator
+
     if integrator is not None:
         return [hill._replace(integrator=Integrator(integrator))]  # type: ignore[arg-type]  # takes names
     return [hill, *(hill._replace(integrator=other) for other in Integrator if other != hill.integrator)]
 
 
 def _walks(
-    hills: list[Hill], episodes: int, seed: int, jobs: int, max_steps: int
-) -> tuple[list[RandomWalk], str]:
+    hills: "Iterable[Hill]", episodes: int, seed: int, jobs: int, max_steps: int
+) -> "tuple[list[RandomWalk], str]":
     """Walks on each hill, as far as they were finished; and why they were not."""
+    from arena.walks.series import InterruptedWalk, random_walk
+
     walks: list[RandomWalk] = []
     for hill in hills:
         try:
@@ -103,62 +106,6 @@ def _walks(
                 walks.append(stop.walk)
             return walks, f"{stop} ({hill.integrator.label})"
     return walks, ""
-
-
-def _render(found: WalkStudy, hill: str) -> RenderableType:
-    first = found.walks[0]
-    heading = f"Random walks on the hill {hill}: {len(first.lengths):,} episodes, seed {first.seed}."
-    parts: list[RenderableType] = [Text(heading), _summaries(found)]
-    if found.fits:
-        parts += [Text(f"Fits to the lengths, {first.hill.integrator.label}:"), _fits(found)]
-    return Group(*parts, *map(Text, found.verdicts))
-
-
-def _table(first: str, *others: str) -> Table:
-    table = Table(box=box.SIMPLE, padding=(0, 0, 0, 2), pad_edge=False)
-    table.add_column(first, no_wrap=True)
-    for name in others:
-        table.add_column(name, justify="right", no_wrap=True)
-    return table
-
-
-def _summaries(found: WalkStudy) -> Table:
-    columns = [walk.hill.integrator.label for walk in found.walks]
-    told = [list(_told(one)) for one in found.summaries]
-    if found.is_the_paper_s:
-        columns.append("paper")
-        told.append(list(_told(PAPER)))
-    table = _table("", *columns)
-    for row in zip(*told):
-        table.add_row(row[0][0], *(value for _, value in row))
-    return table
-
-
-def _told(one: Summary) -> Iterator[tuple[str, str]]:
-    yield "shortest episode, steps", f"{one.least:,}"
-    yield "longest episode, steps", f"{one.most:,}"
-    yield "mean", f"{one.mean:,.0f}"
-    yield "standard error of the mean", f"{one.standard_error:,.0f}"
-    yield "standard deviation", f"{one.deviation:,.0f}"
-    share = "above 50%" if one is PAPER else f"{100.0 * one.share_below:.1f}%"
-    yield f"share below {REASONABLE:,} steps", share
-    yield "least position", f"{one.position[0]:.4f}"
-    yield "greatest position", f"{one.position[1]:.4f}"
-    yield "least velocity", f"{one.velocity[0]:.5f}"
-    yield "greatest velocity", f"{one.velocity[1]:.5f}"
-
-
-def _fits(found: WalkStudy) -> Table:
-    table = _table("distribution", "log-likelihood", "AIC", "KS distance", "p-value")
-    for fit in found.fits:
-        table.add_row(
-            fit.family.name,
-            f"{fit.log_likelihood:,.1f}",
-            f"{fit.aic:,.1f}",
-            f"{fit.distance:.4f}",
-            f"{fit.p_value:.3f}",
-        )
-    return table
 
 
 def add_commands(app: typer.Typer) -> None:

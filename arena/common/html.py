@@ -3,7 +3,11 @@
 from collections.abc import Iterable, Sequence
 from functools import singledispatch
 from html import escape
+from importlib import import_module
 from typing import Any
+
+registrars: set[str] = set()
+"""Names of the modules that register representations; they are imported when the first one is asked for."""
 
 
 def table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -14,7 +18,14 @@ def table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> 
     return f"<table>{parts}</table>"
 
 
-@singledispatch
 def represent(value: Any) -> str:
-    """What a notebook shows of ``value``; ``arena.report.notebook`` registers how."""
+    """Return what a notebook shows of ``value``."""
+    for module in registrars:
+        import_module(module)
+    return representation(value)
+
+
+@singledispatch
+def representation(value: Any) -> str:
+    """The HTML of a value of any type, as long as no module has registered another for its type."""
     return f"<pre>{escape(repr(value))}</pre>"

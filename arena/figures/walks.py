@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from arena.figures.style import BLACK, BLUE, DASHES, LINES, RED, SKY
-from arena.reproduction.published import PAPER
+from arena.reproduction.published_values import PAPER
 from arena.reproduction.walk_study import WalkStudy
 from arena.walks.distributions import Fit
 from envs import Hill

@@ -3,13 +3,13 @@
 import io
 from html import escape
 
-from arena.common.html import represent, table
+from arena.common.html import representation, table
 from arena.results.results import Results
 from arena.results.trained import Trained, UnknownPolicyError
 from arena.tournament.tournament import Tournament
 
 
-@represent.register
+@representation.register
 def results_html(results: Results) -> str:
     """The leaderboard by steps."""
     from arena.analysis.scores import decimals
@@ -25,7 +25,7 @@ def results_html(results: Results) -> str:
     return table(f"Tournament {results.config['name']}: {replicates}", ["place", "entrant", *names], rows)
 
 
-@represent.register
+@representation.register
 def tournament_html(tournament: Tournament) -> str:
     """The entrants, and what was given of their parameters."""
     rows = (
@@ -36,7 +36,7 @@ def tournament_html(tournament: Tournament) -> str:
     return table(heading, ["entrant", "agent", "parameters given"], rows)
 
 
-@represent.register
+@representation.register
 def trained_html(agent: Trained) -> str:
     """The map of its policy; a sentence where it has none."""
     from arena.figures.policy import draw_policy

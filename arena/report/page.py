@@ -12,7 +12,7 @@ from arena.analysis.scores import SCORES, decimals, scores_of
 from arena.analysis.standings import Leaderboard, check_confidence, leaderboard
 from arena.report.page_data import MOST_DRAWN, page_data
 from arena.reproduction.claims import results_claims
-from arena.reproduction.published import MINIMUM_ACCURACY
+from arena.reproduction.published_values import MINIMUM_ACCURACY
 from arena.reproduction.tables import compare
 from arena.reproduction.verdicts import Claim
 from arena.results.digests import digest

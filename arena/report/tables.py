@@ -10,7 +10,7 @@ from rich.text import Text
 
 from arena.analysis.scores import SCORES, decimals
 from arena.analysis.standings import Leaderboard, leaderboard
-from arena.reproduction.published import MINIMUM_ACCURACY
+from arena.reproduction.published_values import MINIMUM_ACCURACY
 from arena.reproduction.tables import Comparison, compare
 from arena.results.results import Results
 from arena.statistics.sequential import ADAPTIVE

@@ -11,7 +11,14 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from arena.analysis.curves import moving_average, settled
-from arena.reproduction.published import MINIMUM_ACCURACY, PAPER, PAPER_SECONDS, REASONABLE, Key, published
+from arena.reproduction.published_values import (
+    MINIMUM_ACCURACY,
+    PAPER,
+    PAPER_SECONDS,
+    REASONABLE,
+    Key,
+    published,
+)
 from arena.reproduction.tables import SCORES, Floats, iterations_spread, paper_tables
 from arena.reproduction.verdicts import Claim, holds_claim, measured_claim, number_claim, untestable_claim
 from arena.results.results import Results

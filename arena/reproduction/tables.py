@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arena.common.plain import without_nan
-from arena.reproduction.published import MINIMUM_ACCURACY, Key, published
+from arena.reproduction.published_values import MINIMUM_ACCURACY, Key, published
 from arena.results.records import RunRecord
 from arena.results.results import Results
 from arena.statistics.intervals import correlation, mean_interval

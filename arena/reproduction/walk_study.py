@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from arena.reproduction.published import PAPER, REASONABLE, Summary
+from arena.reproduction.published_values import PAPER, REASONABLE, Summary
 from arena.walks.distributions import BOOTSTRAPS, Fit, fit_all
 from arena.walks.series import RandomWalk
 from envs import Hill, Integrator

@@ -6,10 +6,12 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
+from fresh import output_of
 from page_tournament import HOSTILE, hostile_results
 
 from arena import Results, load, quick
 from arena.analysis import leaderboard
+from arena.common.html import represent
 
 
 @pytest.fixture(scope="module")
@@ -45,3 +47,19 @@ def test_a_trained_agent_is_its_policy(results: Results) -> None:
     assert "drives by chance" in results.trained("random")._repr_html_()
     with_name = results.trained(HOSTILE)._repr_html_()
     assert "<script" not in with_name
+
+
+DEEP = """
+from agents import Sarsa
+from arena.tournament import Entrant, Tournament
+print(Tournament((Entrant("s", Sarsa),), name="deep")._repr_html_())
+"""
+
+
+def test_whatever_is_imported_first_notebooks_show_it() -> None:
+    table = ET.fromstring(output_of(DEEP))  # noqa: S314 (our own)
+    assert table.findtext("caption") == "Tournament deep: 10 replicates, seed 0"
+
+
+def test_what_nobody_registers_is_shown_as_text() -> None:
+    assert represent("a < b") == "<pre>&#x27;a &lt; b&#x27;</pre>"

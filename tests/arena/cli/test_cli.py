@@ -104,11 +104,6 @@ def test_a_small_paper_prints_both_tables(race: str, capsys: pytest.CaptureFixtu
     assert len(told["paper"]["cells"]) == 32
 
 
-NO_INTEGER = (
-    "Invalid value for '--jobs': Input should be a valid integer, unable to parse string as an integer"
-)
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -123,14 +118,6 @@ NO_INTEGER = (
         (["run", "unknown.toml"], "unknown.toml: agent must be one of"),
         (["run", "nan.toml"], "nan.toml: mass must be a finite number greater than 0, got nan"),
         (["run", "race.toml", "--jobs", "0"], "--jobs must not be 0"),
-        (
-            ["run", "race.toml", "--jobs", "two"],
-            f"{NO_INTEGER}, got 'two'",
-        ),
-        (
-            ["run", "race.toml", "--jobs=a"],
-            f"{NO_INTEGER}, got 'a'",
-        ),
         (["run", "race.toml", "--replicates", "0"], "race.toml: replicates must be at least 1, got 0"),
         (["run", "race.toml", "--seed", "-1"], "race.toml: seed must be at least 0, got -1"),
         (["run", "race.toml", "--driver", "fast"], "Invalid value for '--driver'"),
@@ -161,6 +148,16 @@ def test_bad_input_is_one_clear_line_and_exit_code_2(
     assert message in told.err
     assert told.err.count("\n") == 1
     assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.parametrize("option", [["--jobs", "two"], ["--jobs=two"]])
+def test_what_typer_refuses_is_named_once(
+    race: str, capsys: pytest.CaptureFixture[str], option: list[str]
+) -> None:
+    assert main(["run", race, *option]) == 2
+    told = capsys.readouterr().err  # of the words between, each version of Typer has its own
+    assert re.fullmatch(r"arena: Invalid value for '--jobs': .*\bint(eger)?\b.*\n", told)
+    assert told.count("'two'") == 1
 
 
 def test_a_mistake_of_ours_is_no_bad_input(

@@ -135,7 +135,7 @@ def test_growth_is_the_norm_of_a_steps_matrix(hill: Hill, steepness: float, scal
 
 @given(hills(), st.integers(0, 2**32 - 1), st.booleans(), st.sampled_from([1.0, -1.0]))
 @settings(max_examples=150, deadline=None)
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_no_drive_of_a_box_is_further_than_the_box(
     hill: Hill, seed: int, of_velocity: bool, sign: float
 ) -> None:
@@ -206,7 +206,7 @@ def test_lower_bounds_hold_against_all_drives(hill: Hill, position: float) -> No
 
 @given(hills(), st.integers(0, 2**32 - 1))
 @settings(max_examples=100, deadline=None)
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_an_action_leads_from_a_cell_into_its_image(hill: Hill, seed: int) -> None:
     rng = np.random.default_rng(seed)
     low = rng.uniform(hill.low, hill.high)
@@ -221,7 +221,7 @@ def test_an_action_leads_from_a_cell_into_its_image(hill: Hill, seed: int) -> No
 
 @given(hills(), st.integers(0, 2**32 - 1))
 @settings(max_examples=150, deadline=None)
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_car_leaves_the_wall_as_is_said(hill: Hill, seed: int) -> None:
     assume(Relaxed.of(hill).applies)
     rng, (segment,) = np.random.default_rng(seed), departure(hill)

@@ -12,16 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arena.results.results import Results
-from envs.foundation.checks import integer, number
+from envs.foundation.checks import choice, integer, number
 from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     import pandas as pd
-from collections.abc import Iterable, Iterator
-from contextlib import suppress
-
-from arena.statistics.sequential import ADAPTIVE
-from envs.foundation.checks import choice
 
 WINDOW = 50
 
@@ -71,14 +66,14 @@ def learning_curves(results: Results, level: float, window: int = WINDOW) -> "pd
 
     level = number("level", level)
     rows = []
-    for run in results.runs:
-        if run["status"] == "finished":
-            lengths = results.arrays(run["entrant"], run["replicate"])["lengths"]
+    for record in results.records:
+        if record.finished:
+            lengths = results.arrays(*record.key)["lengths"]
             first = settled(lengths, level, window)
             rows.append(
                 {
-                    "entrant": run["entrant"],
-                    "replicate": run["replicate"],
+                    "entrant": record.entrant,
+                    "replicate": record.replicate,
                     "area": area(lengths, window),
                     "settled": math.nan if first is None else float(first),
                 }
@@ -96,20 +91,15 @@ def reward_curves(results: Results, entrant: str, window: int = WINDOW) -> NDArr
         ValueError: when there is no such entrant, no replicate of it has finished, or there are fewer
             episodes than ``window``.
     """
-    config = results.config
-    choice("entrant", entrant, [one["name"] for one in config["entrants"]])
-    most = config["max_replicates"] if config["replicates"] == ADAPTIVE else config["replicates"]
-    finished = list(_lengths(results, entrant, range(most)))
-    if not finished:
+    choice("entrant", entrant, results.entrants)
+    lengths = [
+        results.arrays(*record.key)["lengths"]
+        for record in results.records
+        if record.entrant == entrant and record.finished
+    ]
+    if not lengths:
         raise InvalidValueError(f"{entrant!r} has no finished run: there is no learning curve")
-    episodes = config["training"]["episodes"]
+    episodes = results.conditions.training.episodes
     if integer("window", window, 1) > episodes:
         raise InvalidValueError(f"window must be at most the {episodes} training episodes, got {window}")
-    return np.array([-moving_average(lengths, window) for lengths in finished])
-
-
-def _lengths(results: Results, entrant: str, replicates: Iterable[int]) -> Iterator[NDArray[np.int64]]:
-    """Steps of the training episodes of the finished runs."""
-    for replicate in replicates:
-        with suppress(KeyError):  # not run yet; one that failed has no arrays
-            yield results.arrays(entrant, replicate)["lengths"]
+    return np.array([-moving_average(steps, window) for steps in lengths])

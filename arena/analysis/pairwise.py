@@ -8,7 +8,13 @@ from arena.analysis.standings import check_confidence
 from arena.common.plain import as_plain
 from arena.results.results import Results
 from arena.statistics.intervals import Estimate, bootstrap_interval, mean_estimate, probability_of_improvement
-from arena.statistics.permutation import at_most, holm, paired_permutation_test, sign_flip_test, too_few
+from arena.statistics.permutation import (
+    holm,
+    is_significant,
+    paired_permutation_test,
+    power_warning,
+    sign_flip_test,
+)
 from envs.foundation.checks import choice, number
 from envs.foundation.errors import InvalidValueError
 
@@ -88,9 +94,9 @@ def compare_entrants(
 
 
 def _verdict(a: str, b: str, difference: float, p_value: float, confidence: float, count: int) -> str:
-    if at_most(p_value, 1.0 - confidence):
+    if is_significant(p_value, 1.0 - confidence):
         return f"{a if difference < 0.0 else b} is better than {b if difference < 0.0 else a}."
-    return too_few(count, 1, confidence) or "They cannot be told apart."
+    return power_warning(count, 1, confidence) or "They cannot be told apart."
 
 
 @dataclass(frozen=True)
@@ -154,7 +160,7 @@ def regressions(
     if not names:
         raise InvalidValueError("the files cannot be compared: they have no entrant in common")
     both = sorted(set(after.replicates) & set(before.replicates))
-    few = too_few(len(both), len(names), confidence, one_sided=True)
+    few = power_warning(len(both), len(names), confidence, one_sided=True)
     if few:
         raise InvalidValueError(few)
     now, then = _rows(after, by, names, both), _rows(before, by, names, both)
@@ -168,7 +174,7 @@ def regressions(
             float(now[i].mean()),
             mean_estimate(worse[i], confidence),
             float(p_values[i]),
-            bool(at_most(p_values[i], 1.0 - confidence)),
+            bool(is_significant(p_values[i], 1.0 - confidence)),
         )
         for i, name in enumerate(names)
     )

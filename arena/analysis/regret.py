@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from arena.common.parallel import imap
 from arena.results.results import Results
-from arena.tournament.conditions import Conditions, Evaluation, Training
 from envs import Hill
 
 Bounds = Mapping[int, NDArray[np.float64]]
@@ -27,17 +26,18 @@ def fewest_steps(results: Results, replicates: Iterable[int]) -> Bounds:
     Returns:
         The lower bounds of ``agents.optimal.optimal_steps``, by replicate.
     """
-    config = results.config
-    hill, evaluation = Hill(**config["hill"]), Evaluation(**config["evaluation"])
-    conditions = Conditions(hill, Training(**config["training"]), evaluation, config["seed"])
+    conditions = results.conditions
+    hill, evaluation = conditions.hill, conditions.evaluation
     positions = {replicate: conditions.start_states(replicate)[:, 0] for replicate in replicates}
     distinct = np.unique(np.concatenate([*positions.values(), np.empty(0)]))
     parts = np.array_split(distinct, max(1, len(distinct) // _TOGETHER))
-    found: dict[float, int] = {}
+    bounds: dict[float, int] = {}
     for part, steps in imap(-1, _lower_bounds, [(hill, part) for part in parts if len(part)]):
-        found.update(zip(part.tolist(), steps.tolist(), strict=True))
+        bounds.update(zip(part.tolist(), steps.tolist(), strict=True))
     return {
-        replicate: np.minimum([found[start] for start in starts.tolist()], evaluation.max_steps).astype(float)
+        replicate: np.minimum([bounds[start] for start in starts.tolist()], evaluation.max_steps).astype(
+            float
+        )
         for replicate, starts in positions.items()
     }
 

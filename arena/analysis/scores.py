@@ -1,6 +1,7 @@
 """The scores that entrants are ranked by: one value a run, what is missing counted as the worst."""
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arena.analysis.regret import Bounds, fewest_steps
+from arena.results.records import RunRecord
 from arena.results.results import Results
 from envs.foundation.checks import choice
 from envs.foundation.errors import InvalidValueError
@@ -18,7 +20,7 @@ Floats = NDArray[np.float64]
 class Score(NamedTuple):
     """What a score is: in words, with how many decimals it is printed, and whether more is better."""
 
-    words: str
+    description: str
     decimals: int
     more_is_better: bool = False
 
@@ -30,6 +32,7 @@ SCORES: dict[str, Score] = {
     "regret": Score("steps of a test drive beyond the fewest possible from its start", 1),
     "iterations": Score("steps of training", 0),
 }
+_ATTRIBUTES = {name: name for name in SCORES} | {"length": "mean_length"}  # of the records
 QUANTILES = {"regret_median": 0.5, "regret_90": 0.9}
 
 
@@ -67,12 +70,6 @@ class Scores:
         choice("by", by, [name for name in SCORES if name in self.values])
         return -self.values[by] if SCORES[by].more_is_better else self.values[by]
 
-    def upto(self, replicates: int) -> "Scores":
-        """Those of the replicates with a number below ``replicates``."""
-        kept = [i for i, replicate in enumerate(self.replicates) if replicate < replicates]
-        values = {name: matrix[:, kept] for name, matrix in self.values.items()}
-        return Scores(self.entrants, tuple(self.replicates[i] for i in kept), values, self.failed[:, kept])
-
 
 def scores_of(results: Results, by: str = "steps", bounds: Bounds | None = None) -> Scores:
     """The scores of all entrants in the replicates that all of them have run.
@@ -88,28 +85,26 @@ def scores_of(results: Results, by: str = "steps", bounds: Bounds | None = None)
         ValueError: when there is no such score, or the bounds do not fit.
     """
     choice("by", by, SCORES)
-    entrants = tuple(dict.fromkeys(entrant["name"] for entrant in results.config["entrants"]))
-    runs: dict[int, dict[str, dict[str, Any]]] = {}
-    for run in results.runs:
-        runs.setdefault(run["replicate"], {})[run["entrant"]] = run
-    replicates = tuple(sorted(number for number, found in runs.items() if len(found) == len(entrants)))
-    training, limit = results.config["training"], results.config["evaluation"]["max_steps"]
+    entrants = tuple(results.entrants)
+    records = {record.key: record for record in results.records}
+    counts = Counter(replicate for _, replicate in records)
+    replicates = tuple(sorted(replicate for replicate, n in counts.items() if n == len(entrants)))
+    training, limit = results.conditions.training, results.conditions.evaluation.max_steps
     worst = {"accuracy": 0.0, "length": limit, "steps": limit}
-    worst["iterations"] = training["episodes"] * training["max_steps"]
-    columns = {"length": "mean_length"}
-    table = [[runs[number][name] for number in replicates] for name in entrants]
+    worst["iterations"] = training.episodes * training.max_steps
+    table = [[records[name, replicate] for replicate in replicates] for name in entrants]
     values = {
-        name: _matrix(table, [[_value(run, columns.get(name, name), most) for run in row] for row in table])
+        name: _matrix(table, [[_value(record, _ATTRIBUTES[name], most) for record in row] for row in table])
         for name, most in worst.items()
     }
     if by == "regret":
         bounds = bounds or fewest_steps(results, replicates)
-        regrets = [[_regrets(results, run, bounds) for run in row] for row in table]
-        values["regret"] = _matrix(table, [[one.mean() for one in row] for row in regrets])
+        regrets = [[_regrets(results, record, bounds) for record in row] for row in table]
+        values["regret"] = _matrix(table, [[regret.mean() for regret in row] for row in regrets])
         for name, share in QUANTILES.items():
-            values[name] = _matrix(table, [[np.quantile(one, share) for one in row] for row in regrets])
+            values[name] = _matrix(table, [[np.quantile(regret, share) for regret in row] for row in regrets])
     order = [name for name in (*SCORES, *QUANTILES) if name in values]
-    failed = _matrix(table, [[run["status"] != "finished" for run in row] for row in table]) > 0.0
+    failed = _matrix(table, [[not record.finished for record in row] for row in table]) > 0.0
     return Scores(entrants, replicates, {name: values[name] for name in order}, failed)
 
 
@@ -117,18 +112,18 @@ def _matrix(table: list[list[Any]], values: list[list[Any]]) -> Floats:
     return np.array(values, dtype=float).reshape(len(table), len(table[0]) if table else 0)
 
 
-def _value(run: dict[str, Any], name: str, worst: float) -> float:
-    missing = run["status"] != "finished" or run[name] is None or math.isnan(run[name])
-    return float(worst if missing else run[name])
+def _value(record: RunRecord, attribute: str, worst: float) -> float:
+    value = getattr(record, attribute)
+    return float(worst if not record.finished or math.isnan(value) else value)
 
 
-def _regrets(results: Results, run: dict[str, Any], bounds: Bounds) -> Floats:
+def _regrets(results: Results, record: RunRecord, bounds: Bounds) -> Floats:
     """Steps beyond the bound, a value a start."""
-    evaluation, number = results.config["evaluation"], run["replicate"]
-    if run["status"] == "finished":
-        lengths = results.arrays(run["entrant"], number)["test_lengths"].astype(float)
+    evaluation, number = results.conditions.evaluation, record.replicate
+    if record.finished:
+        lengths = results.arrays(record.entrant, number)["test_lengths"].astype(float)
     else:
-        lengths = np.full(evaluation["episodes"], float(evaluation["max_steps"]))
+        lengths = np.full(evaluation.episodes, float(evaluation.max_steps))
     least = np.asarray(bounds[number], dtype=float)
     if least.shape != lengths.shape:
         raise InvalidValueError(
@@ -144,5 +139,6 @@ def improvement(scores: Scores, by: str) -> NDArray[np.float64]:
     Shape (entrants, entrants); the values of ``arena.statistics.probability_of_improvement``.
     """
     costs = scores.costs(by)
-    found = [0.5 - 0.5 * np.sign(row[:, None] - costs[:, None, :]).mean(axis=(1, 2)) for row in costs]
-    return np.array(found)
+    return np.array(
+        [0.5 - 0.5 * np.sign(row[:, None] - costs[:, None, :]).mean(axis=(1, 2)) for row in costs]
+    )

@@ -8,7 +8,7 @@ import numpy as np
 from arena.analysis.scores import Scores, scores_of
 from arena.results.results import Results
 from arena.statistics.intervals import Estimate, bootstrap_interval, mean_estimate
-from arena.statistics.permutation import too_few
+from arena.statistics.permutation import power_warning
 from arena.statistics.ranks import rank_distribution, tie_groups
 from arena.statistics.sequential import ADAPTIVE, decided, look_at
 from envs.foundation.checks import number
@@ -113,7 +113,7 @@ def leaderboard(
     scores = scores_of(results, by) if scores is None else scores
     costs = scores.costs(by)
     entrants, count = costs.shape
-    places_at, remarks = _places_at(results.config, scores, confidence)
+    places_at, remarks = _places_at(results, scores, confidence)
     ties = tie_groups(costs, places_at)
     shares = rank_distribution(costs) if count else np.full((entrants, entrants), np.nan)
     means = costs.mean(axis=1) if count else np.zeros(entrants)
@@ -146,23 +146,23 @@ def check_confidence(confidence: float) -> None:
         raise InvalidValueError(f"confidence must be between 0 and 1, got {confidence!r}")
 
 
-def _places_at(config: dict[str, Any], scores: Scores, confidence: float) -> tuple[float, tuple[str, ...]]:
+def _places_at(results: Results, scores: Scores, confidence: float) -> tuple[float, tuple[str, ...]]:
     """The confidence at which the places are tested, and what there is to say of it."""
-    entrants, count = len(scores.entrants), len(scores.replicates)
+    config, entrants, count = results.config, len(scores.entrants), len(scores.replicates)
     pairs = entrants * (entrants - 1) // 2
     if config["replicates"] != ADAPTIVE:
-        few = too_few(count, pairs, confidence) if pairs else ""
-        return confidence, (few,) if few else ()
+        warning = power_warning(count, pairs, confidence) if pairs else ""
+        return confidence, (warning,) if warning else ()
     most, leaders = config["max_replicates"], config["leaders"]
-    look = look_at(config, count)
+    look = look_at(count, entrants, most, config["confidence"])
     whose = "place is" if leaders == 1 else f"{leaders} places are"
     if look is None:
         return 1.0, (f"Adaptive, and not finished: {count} of at most {most} replicates.",)
     if decided(scores.costs("steps"), look, leaders):
         saved = most - count
-        told = f"decided after {count} of at most {most} replicates: {saved} saved"
-        told += f", {saved * entrants:,} runs"
+        state = f"decided after {count} of at most {most} replicates: {saved} saved"
+        state += f", {saved * entrants:,} runs"
     else:
-        told = f"not decided after {count} of at most {most} replicates"
+        state = f"not decided after {count} of at most {most} replicates"
     at = f"{100.0 * config['confidence']:g}% confidence over all looks"
-    return 1.0 - look.level, (f"The first {whose} {told} ({at}).",)
+    return 1.0 - look.level, (f"The first {whose} {state} ({at}).",)

@@ -67,20 +67,20 @@ def plot(
 
 def _learning(results: Results, named: list[str] | None, _replicate: int, _by: str) -> "Figure":
     from arena.figures.learning import draw_learning
-    from arena.results.results import best_entrants
 
-    return _figure_of(draw_learning(results, named or best_entrants(results, _SOME)))
+    return _figure_of(draw_learning(results, named or results.best(_SOME)))
 
 
 def _regret(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
     from arena.analysis.regret import fewest_steps
     from arena.figures.scores import draw_regret
-    from arena.results.results import best_entrants, conditions_of, run_arrays
 
-    names = named or best_entrants(results, _SOME)
+    names = named or results.best(_SOME)
     for name in names:
-        run_arrays(results, name, replicate)  # is there such a run? before the search, which takes seconds
-    starts = conditions_of(results).start_states(replicate)[:, 0]
+        results.finished_arrays(
+            name, replicate
+        )  # is there such a run? before the search, which takes seconds
+    starts = results.conditions.start_states(replicate)[:, 0]
     fewest = fewest_steps(results, [replicate])[replicate]
     return _figure_of(draw_regret(results, names, replicate, starts, fewest))
 
@@ -90,14 +90,13 @@ def _of_one(name: str) -> Callable[..., "Figure"]:
 
     def draw(results: Results, named: list[str] | None, replicate: int, _by: str) -> "Figure":
         from arena.figures import policy as figures_policy
-        from arena.results.results import best_entrants, trained
 
-        names = named or best_entrants(results, 1)
+        names = named or results.best(1)
         if len(names) != 1:
             raise InvalidValueError(
                 f"--entrant must be given once for a picture of one policy, got {len(names)}"
             )
-        return _figure_of(getattr(figures_policy, name)(trained(results, names[0], replicate)))
+        return _figure_of(getattr(figures_policy, name)(results.trained(names[0], replicate)))
 
     return draw
 

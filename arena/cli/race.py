@@ -27,18 +27,17 @@ def race(
 ) -> None:
     """Race trained cars from one start, the optimal drive beside them as a ghost."""
     from arena.figures.film import SUFFIXES, race, save_race, show
-    from arena.results.results import best_entrants
     from envs.foundation.checks import choice
 
     if out is not None:
         choice("suffix of --out", out.suffix.lower(), SUFFIXES)  # before the race is driven
     with load(file) as results:
-        driven = race(results, names or best_entrants(results, 3), start, replicate)
+        driven = race(results, names or results.best(3), start, replicate)
     if out is None:
         show(driven)
     else:
         save_race(driven, out)
-    print("\n".join(driven.told.values()))
+    print("\n".join(driven.captions.values()))
 
 
 def add_commands(app: typer.Typer) -> None:

@@ -124,7 +124,7 @@ def _print_duel(results: Results, a: str, b: str, by: str, confidence: float, *,
         ("difference of the means", duel.difference, places),
         (f"probability that {a} is better", duel.probability, 2),
     ]
-    _print(f"{a} and {b} by {SCORES[by].words}: {duel.replicates} replicates.")
+    _print(f"{a} and {b} by {SCORES[by].description}: {duel.replicates} replicates.")
     width = max(len(label) for label, *_ in rows)
     for label, estimate, digits in rows:
         value, low, high = (f"{number:,.{digits}f}" for number in estimate)
@@ -139,7 +139,7 @@ def _print_changes(
 
     changes = regressions(new, old, amount, by, confidence, relative=relative)
     regressed = any(change.regressed for change in changes)
-    names = [{one["name"] for one in results.config["entrants"]} for results in (new, old)]
+    names = [{*results.entrants} for results in (new, old)]
     gone, come = sorted(names[1] - names[0]), sorted(names[0] - names[1])
     if as_json:
         told: dict[str, Any] = {"by": by, "regressed": regressed, "only_new": come, "only_baseline": gone}

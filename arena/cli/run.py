@@ -93,8 +93,8 @@ def run(
         print_results(results, as_json=as_json)
         if report:
             _write_page(results, page_of(out))
-        failures = sum(one["status"] != "finished" for one in results.runs)
-        if failures and (strict or failures == len(results.runs)):
+        failures = sum(not record.finished for record in results.records)
+        if failures and (strict or failures == len(results.records)):
             raise typer.Exit(SOME_FAILED)
 
 

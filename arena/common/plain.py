@@ -15,6 +15,11 @@ def without_nan(value: Any) -> Any:
         return {name: without_nan(part) for name, part in value.items()}
     if isinstance(value, (list, tuple)):
         return [without_nan(part) for part in value]
+    return none_for_nan(value)
+
+
+def none_for_nan(value: Any) -> Any:
+    """``value``, but None for NaN, which JSON does not know."""
     return None if isinstance(value, float) and math.isnan(value) else value
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from arena.execution.checkpoint import checkpoint_of
 from arena.execution.loops import evaluate, listener, train
 from arena.tournament.conditions import Conditions, Run
-from arena.tournament.outcome import Outcome, complete
+from arena.tournament.outcome import Outcome
 from envs.compilation.kernels import compile_loop
 from envs.compilation.reachable import Reached
 from envs.foundation.streams import stream
@@ -36,7 +36,7 @@ def race(conditions: Conditions, run: Run) -> Outcome:
     compile_loop(evaluate, *evaluation)(*evaluation)
     seconds = time.perf_counter() - began
     test_lengths, test_reached = evaluation[-2:]
-    return complete(run, NAME, agent, training[-1], test_lengths, test_reached, seconds)
+    return Outcome.finished(run, NAME, agent, training[-1], test_lengths, test_reached, seconds)
 
 
 def _train(conditions: Conditions, run: Run, arguments: tuple[Any, ...]) -> None:

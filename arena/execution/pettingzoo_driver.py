@@ -13,7 +13,7 @@ import numpy as np
 from arena.execution.checkpoint import checkpoint_of
 from arena.execution.loops import listener
 from arena.tournament.conditions import Conditions, Run
-from arena.tournament.outcome import Outcome, complete, failed
+from arena.tournament.outcome import Outcome
 from envs.foundation.checks import integer
 from envs.foundation.errors import InvalidValueError
 from envs.foundation.streams import stream
@@ -94,11 +94,11 @@ class _Car:
 
     def outcome(self, seconds: float) -> Outcome:
         self.attempt(self.finish, seconds)
-        return failed(self.run, NAME, self.error, seconds) if self.error else self.finished
+        return Outcome.failure(self.run, NAME, self.error, seconds) if self.error else self.finished
 
     def finish(self, seconds: float) -> None:
         lengths = (self.lengths, self.test_lengths, self.test_reached)
-        self.finished = complete(self.run, NAME, self.agent, *lengths, seconds)
+        self.finished = Outcome.finished(self.run, NAME, self.agent, *lengths, seconds)
 
     def _checked(self, action: Any) -> int:
         found = integer("action", action, 0)

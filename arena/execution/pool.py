@@ -17,7 +17,7 @@ from arena.common.parallel import imap
 from arena.execution import watchdog as claims
 from arena.execution.watchdog import Limits
 from arena.tournament.conditions import Conditions, Run
-from arena.tournament.outcome import Outcome, failed
+from arena.tournament.outcome import Outcome
 from envs.foundation.errors import InvalidValueError
 
 Work = Callable[[str, Conditions, list[Run]], list[Outcome]]
@@ -61,7 +61,7 @@ def _survive(
             with closing(imap(n_jobs, _claim_and_work, arguments, apart=bool(limits))) as finishing:
                 for outcomes in finishing:
                     for outcome in outcomes:
-                        del left[f"{outcome.entrant}#{outcome.replicate}"]
+                        del left[outcome.identity]
                     yield outcomes
         except BrokenProcessPool as death:
             suspects = _suspects(folder)
@@ -91,7 +91,7 @@ def _try_alone(
     for identity, reason in suspects.items():
         driver, conditions, run = left.pop(identity)
         if reason:
-            yield [failed(run, driver, f"the worker died: {reason}")]
+            yield [Outcome.failure(run, driver, f"the worker died: {reason}")]
         else:
             yield from _survive(2, work, [(driver, conditions, [run])], limits, folder, alone=True)
 

@@ -16,7 +16,7 @@ from arena.plugins.freshness import renew_workers
 from arena.results.provenance import source_digests
 from arena.results.results import Results
 from arena.results.store import Store
-from arena.tournament.outcome import failed
+from arena.tournament.outcome import Outcome
 from arena.tournament.tournament import Tournament
 from envs.foundation.checks import choice, instance, integer, number
 from envs.foundation.errors import InvalidValueError
@@ -83,11 +83,11 @@ def run(
             _say_what_starts_anew(conditions, travellers)
         report = progress or (lambda _finished, _total: None)
         for stage, look in stages:
-            left = [one for one in stage if (one.entrant.name, one.replicate) not in done]
+            left = [one for one in stage if one.key not in done]
             for one in left:
                 if one.entrant.name in lost:
-                    store.add(failed(one, "none", lost[one.entrant.name]))
-            driven = {(one.entrant.name, one.replicate): one for one in left if one.entrant.name not in lost}
+                    store.add(Outcome.failure(one, "none", lost[one.entrant.name]))
+            driven = {one.key: one for one in left if one.entrant.name not in lost}
             total = len(tournament.entrants) * (stage[-1].replicate + 1)
             finished = total - len(driven)
             report(finished, total)
@@ -95,7 +95,7 @@ def run(
             with closing(survive(n_jobs, work, tasks, limits)) as finishing:
                 for outcome in chain.from_iterable(finishing):
                     store.add(outcome)
-                    discard(conditions, driven[outcome.entrant, outcome.replicate])
+                    discard(conditions, driven[outcome.key])
                     finished += 1
                     report(finished, total)
             if look and is_decided(tournament, store, look):

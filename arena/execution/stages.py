@@ -15,11 +15,11 @@ def stages_of(tournament: Tournament) -> list[Stage]:
     if tournament.replicates != ADAPTIVE:
         return [(tournament.runs, None)]
     entrants = len(tournament.entrants)
-    found = looks(entrants, tournament.max_replicates, tournament.confidence)
-    starts = [0, *(look.replicates for look in found)]
+    all_looks = looks(entrants, tournament.max_replicates, tournament.confidence)
+    starts = [0, *(look.replicates for look in all_looks)]
     return [
         (tournament.runs[entrants * start : entrants * look.replicates], look)
-        for start, look in zip(starts, found)
+        for start, look in zip(starts, all_looks)
     ]
 
 
@@ -36,7 +36,7 @@ def pending_runs(
     """
     pending: list[Run] = []
     for stage, look in stages:
-        pending += [one for one in stage if (one.entrant.name, one.replicate) not in done]
+        pending += [run for run in stage if run.key not in done]
         if store and look and not pending and is_decided(tournament, store, look):
             break
     return pending

@@ -2,15 +2,16 @@
 
 import random
 from collections.abc import Iterator
-from dataclasses import asdict
 
 from arena.common.npz import unpack
+from arena.common.plain import none_for_nan
 from arena.execution import compiled_driver, pettingzoo_driver
 from arena.execution.pool import survive
 from arena.execution.watchdog import Limits
 from arena.execution.worker import work
 from arena.results.digests import run_digest
-from arena.results.results import Results, plain_scores
+from arena.results.records import RunRecord
+from arena.results.results import Results
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.configuration import from_dict
 from arena.tournament.outcome import Outcome
@@ -35,26 +36,27 @@ def verify(results: Results, runs: int = 4) -> Iterator[str]:
     """
     import joblib
 
-    stored = {(run["entrant"], run["replicate"]): run for run in results.runs if run["status"] == "finished"}
+    stored = {record.key: record for record in results.records if record.finished}
     if not stored:
         raise InvalidValueError(f"{results.path} has no finished run that could be verified")
-    finished = [one for one in results.config["entrants"] if any(one["name"] == name for name, _ in stored)]
-    tournament = from_dict({**results.config, "entrants": finished})
+    config, finished = results.config, {name for name, _ in stored}
+    entrants = [entrant for entrant in config["entrants"] if entrant["name"] in finished]
+    tournament = from_dict({**config, "entrants": entrants})
     for entrant in tournament.entrants:
         if entrant.unavailable:
             raise InvalidValueError(entrant.unavailable)
     sample = random.Random(0).sample(sorted(stored), min(integer("runs", runs, 1), len(stored)))  # noqa: S311
-    chosen = [run for run in tournament.runs if (run.entrant.name, run.replicate) in sample]
+    chosen = [run for run in tournament.runs if run.key in sample]
     for backend, n_jobs, other in (("loky", 1, True), ("threading", 2, False)):
         tasks = []
         for run in chosen:
-            driver = stored[run.entrant.name, run.replicate]["driver"]
+            driver = stored[run.key].driver
             chosen_driver = _other(driver, tournament.conditions, run) if other else driver
             tasks.append((chosen_driver, tournament.conditions, [run]))
         with joblib.parallel_config(backend=backend):
             for outcomes in survive(n_jobs, work, tasks, Limits()):
                 for outcome in outcomes:
-                    before = stored[outcome.entrant, outcome.replicate]
+                    before = stored[outcome.key]
                     difference = _difference(results, before, outcome)
                     if difference:
                         yield (
@@ -76,18 +78,17 @@ def _other(driver: str, conditions: Conditions, run: Run) -> str:
     return compiled_driver.NAME
 
 
-def _difference(results: Results, stored: dict[str, object], outcome: Outcome) -> str:
+def _difference(results: Results, stored: RunRecord, outcome: Outcome) -> str:
     """What differs first; empty if nothing does."""
     if outcome.error:
         return f"its end: {outcome.error.strip().splitlines()[-1]}"
-    scores = plain_scores(asdict(outcome))
-    before = results.arrays(outcome.entrant, outcome.replicate)
-    after = unpack(outcome.arrays)
-    if run_digest({**stored, **scores}, after) == run_digest(stored, before):
+    before, after = results.arrays(*outcome.key), unpack(outcome.arrays)
+    if run_digest(outcome, after) == run_digest(stored, before):
         return ""
     for name in ("status", "accuracy", "mean_length", "iterations"):
-        if scores[name] != stored[name]:
-            return f"{name}: {stored[name]} before, {scores[name]} now"
+        then, now = (none_for_nan(getattr(run, name)) for run in (stored, outcome))
+        if then != now:
+            return f"{name}: {then} before, {now} now"
     names = sorted(before.keys() | after.keys())
     return next(
         name

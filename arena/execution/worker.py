@@ -4,7 +4,7 @@ import traceback
 
 from arena.execution import compiled_driver, pettingzoo_driver
 from arena.tournament.conditions import Conditions, Run
-from arena.tournament.outcome import Outcome, failed
+from arena.tournament.outcome import Outcome
 
 
 def work(driver: str, conditions: Conditions, runs: list[Run]) -> list[Outcome]:
@@ -17,4 +17,4 @@ def work(driver: str, conditions: Conditions, runs: list[Run]) -> list[Outcome]:
     except KeyboardInterrupt:
         raise
     except BaseException:  # sys.exit, too
-        return [failed(only, driver, traceback.format_exc())]
+        return [Outcome.failure(only, driver, traceback.format_exc())]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.optimal.driver import Optimal
-from arena.results.results import Results, conditions_of, trained
+from arena.results.results import Results
 from envs import Hill
 from envs.foundation.checks import choice, number
 from envs.foundation.errors import InvalidValueError
@@ -52,7 +52,7 @@ class Race:
         return max(map(len, self.actions.values()))
 
     @property
-    def told(self) -> dict[str, str]:
+    def captions(self) -> dict[str, str]:
         """Each car's name and steps, by its name."""
         return {
             name: f"{name}: {len(actions)} steps" + ("" if name in self.reached else ", not there")
@@ -77,10 +77,9 @@ def race(results: Results, entrants: Sequence[str], start: float = -0.5, replica
         raise InvalidValueError(
             f"entrants must be one or more that differ, got {', '.join(entrants) or 'none'}"
         )
-    conditions = conditions_of(results)
-    hill, limit = conditions.hill, conditions.evaluation.max_steps
+    hill, limit = results.conditions.hill, results.conditions.evaluation.max_steps
     start = number("start", start, hill.min_position, hill.goal_position)
-    agents = {name: trained(results, name, replicate).agent for name in entrants}
+    agents = {name: results.trained(name, replicate).agent for name in entrants}
     ghost = GHOST if GHOST not in agents else None
     try:
         agents |= {ghost: Optimal.create(hill)} if ghost else {}
@@ -146,13 +145,13 @@ def _at_start(hill: Hill, cars: list[str], start: float, limit: int, mode: str |
 
 def _rendered(race: Race, drivers: Iterable[str], mode: str = "rgb_array") -> Iterator[Frame]:
     """What the environment shows of these cars, until the last of all has ended."""
-    told = {race.told[name]: race.actions[name] for name in drivers}
-    env, _ = _at_start(race.hill, list(told), race.start, race.limit, mode)
+    actions = {race.captions[name]: race.actions[name] for name in drivers}
+    env, _ = _at_start(race.hill, list(actions), race.start, race.limit, mode)
     try:
         yield env.render()
         for step in range(race.steps):
             if env.agents:
-                env.step({name: told[name][step] for name in env.agents})
+                env.step({name: actions[name][step] for name in env.agents})
             yield env.render()
     finally:
         env.close()
@@ -172,13 +171,13 @@ def _gif(pictures: Iterable[Frame]) -> bytes:
 
 
 def _page(race: Race, animation: bytes) -> str:
-    told = "; ".join(race.told.values())
+    captions = "; ".join(race.captions.values())
     source = base64.b64encode(animation).decode()
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>Race</title></head>\n'
         f"<body><h1>Race from {race.start:g}</h1>\n"
         f'<img src="data:image/gif;base64,{source}" alt="Cars on the hill">\n'
-        f"<p>{html.escape(told)}</p></body></html>\n"
+        f"<p>{html.escape(captions)}</p></body></html>\n"
     )
 
 

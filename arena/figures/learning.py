@@ -5,14 +5,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from arena.analysis.curves import WINDOW
+from arena.analysis.curves import WINDOW, reward_curves
 from arena.figures.style import DASHES, LINES, make_axes
 from arena.results.results import Results
 from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-from arena.analysis.curves import reward_curves
 
 
 def draw_learning(

@@ -30,16 +30,14 @@ def find_sweep(results: Results) -> Sweep:
     Raises:
         ValueError: when there are none on two grids.
     """
-    found: dict[str, dict[tuple[int, int], str]] = {}
-    for one in results.config["entrants"]:
-        others = dict(one["parameters"])
-        bins = others.pop("bins", None)
-        bins = [bins, bins] if isinstance(bins, int) else bins
-        if isinstance(bins, list) and len(bins) == 2 and all(isinstance(n, int) for n in bins):
-            key = json.dumps([one["agent"], others], sort_keys=True)
-            found.setdefault(key, {})[bins[0], bins[1]] = one["name"]
+    groups: dict[str, dict[tuple[int, int], str]] = {}
+    for entrant in results.entrants.values():
+        others = {name: value for name, value in entrant.parameters.items() if name != "bins"}
+        if entrant.bins is not None:
+            key = json.dumps([entrant.agent, others], sort_keys=True)
+            groups.setdefault(key, {})[entrant.bins] = entrant.name
     swept: dict[str, dict[tuple[int, int], str]] = {}
-    for key, grids in found.items():
+    for key, grids in groups.items():
         if len(grids) > 1:
             agent = json.loads(key)[0]
             swept[f"{agent}, as {next(iter(grids.values()))}" if agent in swept else agent] = grids
@@ -60,7 +58,7 @@ def draw_sweep(results: Results, scores: Scores, figure: "Figure | None" = None)
     figure = figure or figures.Figure(figsize=(12.0, 0.8 + 3.2 * len(swept)), layout="constrained")
     panels = figure.subplots(len(swept), len(SWEPT), squeeze=False)
     for column, by in zip(panels.T, SWEPT):
-        grids = {agent: _grid(found, scores, by) for agent, found in swept.items()}
+        grids = {agent: _grid(entrants, scores, by) for agent, entrants in swept.items()}
         low = min(float(np.nanmin(grid)) for _, _, grid in grids.values())
         high = max(float(np.nanmax(grid)) for _, _, grid in grids.values())
         for axes, (agent, (n_p, n_v, grid)) in zip(column, grids.items()):
@@ -74,17 +72,17 @@ def draw_sweep(results: Results, scores: Scores, figure: "Figure | None" = None)
             for (i, j), value in np.ndenumerate(grid):
                 light = high > low and (value - low) / (high - low) > 0.5
                 if not math.isnan(value):
-                    told = f"{value:,.{SCORES[by].decimals}f}"
-                    axes.text(j, i, told, ha="center", va="center", color="black" if light else "white")
-        figure.colorbar(mesh, ax=list(column), location="bottom", label=SCORES[by].words)
+                    text = f"{value:,.{SCORES[by].decimals}f}"
+                    axes.text(j, i, text, ha="center", va="center", color="black" if light else "white")
+        figure.colorbar(mesh, ax=list(column), location="bottom", label=SCORES[by].description)
     return figure
 
 
 def _grid(
-    found: Mapping[tuple[int, int], str], scores: Scores, by: str
+    entrants: Mapping[tuple[int, int], str], scores: Scores, by: str
 ) -> tuple[list[int], list[int], NDArray[np.float64]]:
     """The numbers of cells along both, and the mean score over the replicates; NaN where there is none."""
-    n_p, n_v = (sorted({bins[d] for bins in found}) for d in (0, 1))
+    n_p, n_v = (sorted({bins[d] for bins in entrants}) for d in (0, 1))
     means = dict(zip(scores.entrants, scores.values[by].mean(axis=1)))
-    grid = np.array([[means.get(found.get((p, v), ""), math.nan) for v in n_v] for p in n_p])
+    grid = np.array([[means.get(entrants.get((p, v), ""), math.nan) for v in n_v] for p in n_p])
     return n_p, n_v, grid

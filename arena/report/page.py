@@ -51,7 +51,7 @@ def report(results: Results, by: str = "steps", confidence: float = 0.95, most_d
         undefined=StrictUndefined,
         trim_blocks=False,
     )
-    environment.filters["told"] = _told
+    environment.filters["number"] = _number
     environment.filters["pretty"] = lambda value: json.dumps(value, indent=1)
     check_confidence(confidence)
     scores = scores_of(results, by)
@@ -62,7 +62,7 @@ def report(results: Results, by: str = "steps", confidence: float = 0.95, most_d
         config=config,
         sections=_sections(paper=paper is not None),
         board=board,
-        words=SCORES[by].words,
+        description=SCORES[by].description,
         percent=f"{100.0 * confidence:g}",
         columns=_columns(board),
         rows=list(_rows(results, board)),
@@ -73,8 +73,8 @@ def report(results: Results, by: str = "steps", confidence: float = 0.95, most_d
         paper=paper,
         least=f"{MINIMUM_ACCURACY:g}",
         claims=_claims(results),
-        failures=list(_failures(results)),
-        untold=data.pop("untold"),
+        failures=[record for record in results.records if not record.finished],
+        unavailable=data.pop("unavailable"),
         digest=digest(results),
         command=_command(config),
         versions=results.versions,
@@ -83,14 +83,14 @@ def report(results: Results, by: str = "steps", confidence: float = 0.95, most_d
 
 
 def _sections(*, paper: bool) -> list[tuple[str, str]]:
-    told = [("paper", "Beside the paper")] if paper else []
+    beside_the_paper = [("paper", "Beside the paper")] if paper else []
     return [
         ("leaderboard", "Leaderboard"),
         ("learning", "Learning"),
         ("maps", "Policies and visits"),
         ("pairs", "Pairs"),
         ("race", "Race"),
-        *told,
+        *beside_the_paper,
         ("failures", "Failures"),
         ("reproduce", "How to reproduce"),
     ]
@@ -98,26 +98,25 @@ def _sections(*, paper: bool) -> list[tuple[str, str]]:
 
 def _columns(board: Leaderboard) -> list[tuple[str, bool]]:
     """Labels, and whether the column is one of numbers."""
-    told = [(name.replace("_", " "), True) for name in board.shown]
-    return [("place", False), ("entrant", False), ("agent", False), *told, ("failed runs", True)]
+    scores = [(name.replace("_", " "), True) for name in board.shown]
+    return [("place", False), ("entrant", False), ("agent", False), *scores, ("failed runs", True)]
 
 
 def _rows(results: Results, board: Leaderboard) -> Iterator[dict[str, Any]]:
-    agents = {one["name"]: one["agent"] for one in results.config["entrants"]}
-    for order, one in enumerate(board.standings):
+    for order, standing in enumerate(board.standings):
         numbers = []
         for name in board.shown:
-            value, low, high = one.scores[name]
+            value, low, high = standing.scores[name]
             form = f"{{:,.{decimals(name)}f}}"
             ends = "" if math.isnan(low) else f" [{form.format(low)}, {form.format(high)}]"
-            told = "-" if math.isnan(value) else form.format(value) + (ends if name == board.by else "")
-            numbers.append((value, told))
+            text = "-" if math.isnan(value) else form.format(value) + (ends if name == board.by else "")
+            numbers.append((value, text))
         yield {
             "order": order,
-            "place": one.places,
-            "entrant": one.entrant,
-            "agent": agents[one.entrant],
-            "numbers": [*numbers, (one.failed, str(one.failed))],
+            "place": standing.places,
+            "entrant": standing.entrant,
+            "agent": results.entrants[standing.entrant].agent,
+            "numbers": [*numbers, (standing.failed, str(standing.failed))],
         }
 
 
@@ -127,13 +126,6 @@ def _claims(results: Results) -> list[Claim]:
         return results_claims(results)
     except InvalidValueError:
         return []
-
-
-def _failures(results: Results) -> Iterator[dict[str, Any]]:
-    for run in results.runs:
-        if run["status"] != "finished":
-            lines = run.get("error", "").strip().splitlines()
-            yield {**run, "reason": lines[-1] if lines else "no reason"}
 
 
 def _command(config: dict[str, Any]) -> str:
@@ -150,7 +142,7 @@ def _command(config: dict[str, Any]) -> str:
     )
 
 
-def _told(value: float) -> str:
+def _number(value: float) -> str:
     if math.isnan(value):
         return ""
     return f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:,.4g}"

@@ -11,9 +11,9 @@ from arena.analysis.curves import WINDOW, reward_curves
 from arena.analysis.policy_map import map_of, policy, visits
 from arena.analysis.scores import Scores, improvement
 from arena.analysis.standings import Leaderboard
-from arena.results.results import Results, conditions_of, trained
+from arena.results.results import Results
 from arena.results.trained import Trained, UnknownPolicyError, drive
-from arena.statistics.permutation import at_most
+from arena.statistics.permutation import is_significant
 from envs.foundation.errors import InvalidValueError
 
 STARTS = 5  # of the race, evenly over the range of starts
@@ -24,7 +24,7 @@ _THOUSANDTHS = 1000  # positions of the race are whole thousandths
 def page_data(
     results: Results, scores: Scores, board: Leaderboard, most_drawn: int, replicate: int = 0
 ) -> dict[str, Any]:
-    """The data, and under ``untold`` the entrants whose policies cannot be told, with the reasons.
+    """The data, and under ``unavailable`` the entrants whose policies cannot be made again, with the reasons.
 
     Args:
         results: of the tournament.
@@ -33,25 +33,25 @@ def page_data(
         most_drawn: entrants with curves, maps and drives, the first ones by place.
         replicate: whose policies are drawn.
     """
-    conditions = conditions_of(results)
+    conditions = results.conditions
     hill = conditions.hill
-    names = [one.entrant for one in board.standings]
+    names = [standing.entrant for standing in board.standings]
     starts = np.linspace(hill.min_start, hill.max_start, STARTS).tolist()
-    drawn, untold = [], []
+    drawn, unavailable = [], []
     at = _sampled(conditions.training.episodes)
     for number, name in enumerate(names[:most_drawn]):
         try:
-            told = _policy(trained(results, name, replicate), starts)
+            policy_data = _policy(results.trained(name, replicate), starts)
         except InvalidValueError as error:  # not run yet, failed, or not to be made again
-            told = {"map": None, "drives": None}
-            untold.append((name, str(error)))
-        drawn.append({"entrant": number, "curve": _curve(results, name, at), **told})
+            policy_data = {"map": None, "drives": None}
+            unavailable.append((name, str(error)))
+        drawn.append({"entrant": number, "curve": _curve(results, name, at), **policy_data})
     order = [scores.entrants.index(name) for name in names]
     better = 100.0 * improvement(scores, board.by)[np.ix_(order, order)] if scores.replicates else None
-    apart = at_most(np.array(board.p_values), 1.0 - board.confidence)
+    apart = is_significant(np.array(board.p_values), 1.0 - board.confidence)
     return {
         "names": names,
-        "apart": ["".join("01"[int(one)] for one in row) for row in apart],
+        "apart": ["".join("01"[int(pair)] for pair in row) for row in apart],
         "better": np.full(apart.shape, 50).tolist() if better is None else _whole(better),
         "episodes": conditions.training.episodes,
         "at": at,
@@ -64,7 +64,7 @@ def page_data(
             "goal": hill.goal_position,
         },
         "ghost": _ghost(results, starts),
-        "untold": untold,
+        "unavailable": unavailable,
     }
 
 
@@ -112,7 +112,7 @@ def _policy(agent: Trained, starts: Sequence[float]) -> dict[str, Any]:
 
 def _ghost(results: Results, starts: Sequence[float]) -> list[Any] | None:
     """Positions of the optimal drives; None on a hill for which there is no such driver."""
-    conditions = conditions_of(results)
+    conditions = results.conditions
     try:
         optimal = Optimal.create(conditions.hill)
     except InvalidValueError:

@@ -8,7 +8,7 @@ from rich.text import Text
 from arena.analysis.curves import reward_curves
 from arena.analysis.policy_map import map_of, policy
 from arena.figures.style import ACTION_NAMES, ACTIONS
-from arena.results.results import Results, best_entrants, trained
+from arena.results.results import Results
 from arena.results.trained import Trained
 from envs.foundation.errors import InvalidValueError
 
@@ -33,7 +33,7 @@ def sparkline(values: ArrayLike, low: float, high: float, width: int = _WIDTH) -
 def pictures(results: Results) -> RenderableType:
     """Learning curves of the best, on one logarithmic scale, and the policy of the first; or nothing."""
     try:
-        names = best_entrants(results, _BEST)
+        names = results.best(_BEST)
         curves = {name: reward_curves(results, name).mean(axis=0) for name in names}
     except InvalidValueError:  # no run has finished, or there are too few episodes for a curve
         return Group()
@@ -47,7 +47,7 @@ def pictures(results: Results) -> RenderableType:
 
 def _policy(results: Results, name: str) -> list[Text]:
     try:
-        return blocks(trained(results, name))
+        return blocks(results.trained(name))
     except InvalidValueError:  # one that cannot be told
         return []
 

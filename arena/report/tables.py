@@ -64,42 +64,42 @@ def _leaderboard(board: Leaderboard) -> Table:
     """One line an entrant; the score that decides comes first, with its interval."""
     table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
     table.add_column("place", no_wrap=True)
-    widest = max(len(one.entrant) for one in board.standings)
+    widest = max(len(standing.entrant) for standing in board.standings)
     table.add_column("entrant", overflow="fold", min_width=min(widest, _NAME))
     for name in board.shown:
         table.add_column(_HEADERS[name], justify="right", no_wrap=True)
-    for one in board.standings:
-        decisive = one.scores[board.by]
+    for standing in board.standings:
+        decisive = standing.scores[board.by]
         table.add_row(
-            one.places,
-            Text(one.entrant),
+            standing.places,
+            Text(standing.entrant),
             interval_text(decisive.value, decisive.high - decisive.value, decimals(board.by)),
-            *(interval_text(one.scores[name].value, math.nan, decimals(name)) for name in board.shown[1:]),
+            *(
+                interval_text(standing.scores[name].value, math.nan, decimals(name))
+                for name in board.shown[1:]
+            ),
         )
     return table
 
 
 def _notes(results: Results, board: Leaderboard) -> Iterator[str]:
-    yield f"By the mean {SCORES[board.by].words}."
+    yield f"By the mean {SCORES[board.by].description}."
     yield from board.remarks
-    if any(one.place > 1 for one in board.standings):
+    if any(standing.place > 1 for standing in board.standings):
         yield (
             f"Places such as 2-4: any of these, with {100.0 * board.confidence:g}% confidence for all "
             "(paired permutation tests, Holm)."
         )
     elif len(board.standings) > 1 and not board.remarks:
         yield "No two can be told apart (paired permutation tests, Holm)."
-    failed = [f"{one.entrant} ({one.failed})" for one in board.standings if one.failed]
+    failed = [f"{s.entrant} ({s.failed})" for s in board.standings if s.failed]
     if failed:
         yield f"A run that failed counts as the worst that is possible: {', '.join(failed)}."
-    unfinished = {run["replicate"] for run in results.runs}
-    if len(unfinished) > board.replicates:
+    if len({record.replicate for record in results.records}) > board.replicates:
         yield f"Not finished: only the {board.replicates} replicates that all entrants have run count."
-    interpreted = {
-        run["entrant"]: None
-        for run in results.runs
-        if run["status"] == "finished" and run["driver"] != "compiled"
-    }
+    interpreted = dict.fromkeys(
+        record.entrant for record in results.records if record.finished and record.driver != "compiled"
+    )
     if interpreted:
         yield f"Driven interpreted, in the PettingZoo environment: {', '.join(interpreted)}."
 
@@ -147,11 +147,10 @@ def _paper(comparison: Comparison) -> RenderableType:
 
 
 def _failures(results: Results) -> Iterator[Text]:
-    for run in results.runs:
-        if run["status"] != "finished":
-            last = (run.get("error", "").strip().splitlines() or ["no reason"])[-1]
-            reason = "".join(c if c.isprintable() else "?" for c in last)
-            yield Text(f"{run['entrant']} replicate {run['replicate']} failed: {reason}")
+    for record in results.records:
+        if not record.finished:
+            reason = "".join(c if c.isprintable() else "?" for c in record.reason)
+            yield Text(f"{record.entrant} replicate {record.replicate} failed: {reason}")
 
 
 def _table(title: str, *columns: str) -> Table:

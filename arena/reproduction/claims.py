@@ -16,7 +16,7 @@ from arena.reproduction.tables import SCORES, Floats, iterations_spread, paper_t
 from arena.reproduction.verdicts import Claim, holds_claim, measured_claim, number_claim, untestable_claim
 from arena.results.results import Results
 from arena.statistics.intervals import correlation
-from arena.statistics.permutation import at_most, holm, paired_permutation_test
+from arena.statistics.permutation import holm, is_significant, paired_permutation_test
 from arena.walks.series import RandomWalk
 
 WALKS = 2000  # of a series
@@ -116,7 +116,7 @@ def _best_cell_claims(length: Floats) -> Iterator[Claim]:
             f"{_name(_BEST)} drives shorter than {_name(keys[i])}",
             float(theirs[i] - theirs[best]),
             differences[i],
-            reproduced=bool(at_most(p, _LEVEL)) and float(np.nansum(differences[i])) > 0.0,
+            reproduced=bool(is_significant(p, _LEVEL)) and float(np.nansum(differences[i])) > 0.0,
             note=f"steps by which it is; permutation test, Holm over {len(beside)}: p = {p:.2g}",
         )
     other = keys.index(("q-learning", *_BEST[1:]))
@@ -178,7 +178,7 @@ def _algorithm_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
             f"no significant difference in {score.replace('_', ' ')}",
             float(theirs[16:, column].mean() - theirs[:16, column].mean()),
             differences,
-            reproduced=not at_most(p, _LEVEL),
+            reproduced=not is_significant(p, _LEVEL),
             note=f"SARSA less Q-learning, mean of 16 cells; paired permutation test: p = {p:.2g}",
         )
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from arena.common.plain import without_nan
 from arena.reproduction.published import MINIMUM_ACCURACY, Key, published
+from arena.results.records import RunRecord
 from arena.results.results import Results
 from arena.statistics.intervals import correlation, mean_interval
 from envs.foundation.errors import InvalidValueError
@@ -53,19 +54,19 @@ class Comparison:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None."""
-        found: dict[str, Any] = without_nan(asdict(self))
-        return found
+        values: dict[str, Any] = without_nan(asdict(self))
+        return values
 
 
 def compare(results: Results) -> Comparison | None:
     """The comparison, if ``results`` are of the tournament ``paper``; else None."""
     if results.config["name"] != "paper":
         return None
-    runs: dict[Key, list[dict[str, Any]]] = {}
-    for run in results.runs:
-        bins = run["parameters"].get("bins")
-        if isinstance(bins, list) and len(bins) == 2:
-            runs.setdefault((run["agent"], *bins), []).append(run)
+    keys = _keys(results)
+    runs: dict[Key, list[RunRecord]] = {}
+    for record in results.records:
+        if record.finished and record.entrant in keys:
+            runs.setdefault(keys[record.entrant], []).append(record)
     cells = tuple(_cell(key, runs.get(key, []), *row) for key, row in published().items())
     ours = [cell.iterations[0] for cell in cells]
     theirs = [cell.paper_iterations for cell in cells]
@@ -81,13 +82,9 @@ def compare(results: Results) -> Comparison | None:
     )
 
 
-def _cell(
-    key: Key, runs: list[dict[str, Any]], accuracy: float, mean_length: float, iterations: float
-) -> Cell:
-    finished = [run for run in runs if run["status"] == "finished"]
-
-    def mean(name: str) -> tuple[float, float]:
-        return mean_interval(math.nan if run[name] is None else float(run[name]) for run in finished)
+def _cell(key: Key, runs: list[RunRecord], accuracy: float, mean_length: float, iterations: float) -> Cell:
+    def mean(score: str) -> tuple[float, float]:
+        return mean_interval(float(getattr(record, score)) for record in runs)
 
     ours = (mean("accuracy"), mean("mean_length"), mean("iterations"))
     return Cell(*key, *ours, accuracy, mean_length, iterations)
@@ -104,27 +101,31 @@ def paper_tables(results: Results) -> dict[str, Floats]:
         ValueError: when the results are not those of the whole tournament.
     """
     cells = {key: number for number, key in enumerate(published())}
-    count = results.config["replicates"]
-    named = results.config["name"] == "paper" and isinstance(count, int)
-    finished = [run for run in results.runs if run["status"] == "finished"] if named else []
-    runs = {(_key(run), run["replicate"]): run for run in finished}
+    config, keys = results.config, _keys(results)
+    count = config["replicates"]
+    runs = {
+        (keys.get(record.entrant), record.replicate): record
+        for record in results.records
+        if record.finished and config["name"] == "paper" and isinstance(count, int)
+    }
     if not runs or runs.keys() != {(key, number) for key in cells for number in range(count)}:
         raise InvalidValueError(
             f"results must be those of the tournament paper, all runs finished, got {results!r}"
         )
     if count < 2:
         raise InvalidValueError("results must have 2 replicates or more, got 1")
-    found = {score: np.full((len(cells), count), math.nan) for score in SCORES}
-    for (key, replicate), run in runs.items():
-        for score in SCORES:
-            found[score][cells[key], replicate] = math.nan if run[score] is None else run[score]
-    return found
+    return {
+        score: np.array(
+            [[getattr(runs[key, replicate], score) for replicate in range(count)] for key in cells],
+            dtype=float,
+        )
+        for score in SCORES
+    }
 
 
-def _key(run: dict[str, Any]) -> Key:
-    bins = run["parameters"].get("bins")
-    n_p, n_v = bins if isinstance(bins, list) and len(bins) == 2 else (0, 0)
-    return run["agent"], n_p, n_v
+def _keys(results: Results) -> dict[str, Key]:
+    """By entrant, the cell of the tables that it is."""
+    return {e.name: (e.agent, *e.bins) for e in results.entrants.values() if e.bins is not None}
 
 
 def iterations_spread(iterations: Floats) -> Floats:

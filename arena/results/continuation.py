@@ -4,7 +4,7 @@ import json
 from typing import Any
 
 # Changing these changes no result, so a tournament may be continued with others.
-FREE = {"time_limit", "memory_limit"}
+MAY_CHANGE = {"time_limit", "memory_limit"}
 
 
 def difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
@@ -14,7 +14,7 @@ def difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     name count: its parameters could not be completed.
     """
     for key in {**ours, **theirs}:
-        if key in FREE or theirs.get(key) == ours.get(key):
+        if key in MAY_CHANGE or theirs.get(key) == ours.get(key):
             continue
         if key == "entrants" and _same_entrants(theirs[key], ours[key]):
             continue

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from arena.statistics.sequential import ADAPTIVE, MOST
+from arena.statistics.sequential import ADAPTIVE, MAX_REPLICATES
 
 _NUMBER = (int, float, type(None))
 _LARGEST = 1e15  # more than any score or count
@@ -71,6 +71,8 @@ def _are_valid_numbers(config: dict[str, Any]) -> bool:
     if isinstance(config["replicates"], int):
         return True
     most, leaders, confidence = (config.get(k) for k in ("max_replicates", "leaders", "confidence"))
-    counts = isinstance(most, int) and 1 <= most <= MOST and isinstance(leaders, int) and leaders >= 1
+    counts = (
+        isinstance(most, int) and 1 <= most <= MAX_REPLICATES and isinstance(leaders, int) and leaders >= 1
+    )
     level = isinstance(confidence, float) and 0.0 < confidence < 1.0
     return config["replicates"] == ADAPTIVE and counts and level

@@ -174,7 +174,7 @@ class Store:
         row = (
             *outcome.key,
             outcome.driver,
-            str(outcome.status),
+            outcome.status,
             outcome.accuracy,
             outcome.mean_length,
             outcome.iterations,

@@ -64,15 +64,15 @@ def smallest_p(replicates: int, *, one_sided: bool = False) -> float:
 def needed_replicates(comparisons: int, level: float, *, one_sided: bool = False) -> int | None:
     """How many it takes so that so many tests can show a difference at all; None if no number does."""
     for replicates in range(1, EXACT + 1):
-        if at_most(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
+        if is_significant(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
             return replicates
     return None
 
 
-def too_few(replicates: int, comparisons: int, confidence: float, *, one_sided: bool = False) -> str:
+def power_warning(replicates: int, comparisons: int, confidence: float, *, one_sided: bool = False) -> str:
     """Why so many replicates can show nothing, in one sentence; empty if they can."""
     level = 1.0 - confidence
-    if at_most(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
+    if is_significant(smallest_p(replicates, one_sided=one_sided) * comparisons, level):
         return ""
     needed = needed_replicates(comparisons, level, one_sided=one_sided)
     return (
@@ -94,7 +94,7 @@ def holm(p_values: ArrayLike) -> Floats:
     return found
 
 
-def at_most(p: Any, level: float) -> Any:
+def is_significant(p: Any, level: float) -> Any:
     """Whether ``p``, a number or an array, is within the level; 1 - 0.95 is a little more than 0.05."""
     return p <= level * (1.0 + 1e-9)
 

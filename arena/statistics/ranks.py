@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arena.statistics.intervals import RESAMPLES
-from arena.statistics.permutation import Floats, at_most, holm, sign_flip_test
+from arena.statistics.permutation import Floats, holm, is_significant, sign_flip_test
 
 
 def rank_distribution(costs: ArrayLike, seed: int = 0) -> Floats:
@@ -75,6 +75,6 @@ def tie_groups(costs: ArrayLike, confidence: float = 0.95, seed: int = 0) -> Tie
         p_values[above] = holm(sign_flip_test(values[above[0]] - values[above[1]], seed=seed))
     p_values = np.minimum(p_values, p_values.T)
     means = values.mean(axis=1) if count else np.zeros(entrants)
-    apart = at_most(p_values, 1.0 - confidence)
+    apart = is_significant(p_values, 1.0 - confidence)
     better = apart & (means[:, None] < means[None, :])
     return Ties(p_values, better, 1 + better.sum(axis=0), entrants - better.sum(axis=1))

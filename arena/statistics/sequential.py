@@ -10,8 +10,7 @@ offer, and costs some power against boundaries that make use of it.
 """
 
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +20,7 @@ from arena.statistics.ranks import tie_groups
 
 ADAPTIVE = "adaptive"
 BATCH = 5
-MOST = 10_000
+MAX_REPLICATES = 10_000
 
 
 class Look(NamedTuple):
@@ -31,25 +30,25 @@ class Look(NamedTuple):
     level: float
 
 
-def looks(entrants: int, most: int, confidence: float) -> list[Look]:
+def looks(entrants: int, max_replicates: int, confidence: float) -> list[Look]:
     """When the places of so many entrants are tested, and at which levels; none if that can show nothing.
 
     A look whose level no data could reach is left out; what it would have spent is left for the next.
 
     Args:
         entrants: how many race.
-        most: replicates at which the tournament ends in any case.
+        max_replicates: at which the tournament ends in any case.
         confidence: 1 - the error that all looks may spend together.
     """
     comparisons = max(1, entrants * (entrants - 1) // 2)
-    found: list[Look] = []
+    all_looks: list[Look] = []
     spent = 0.0
-    for replicates in [*range(BATCH, most, BATCH), most]:
-        level = (1.0 - confidence) * math.log1p((math.e - 1.0) * replicates / most) - spent
+    for replicates in [*range(BATCH, max_replicates, BATCH), max_replicates]:
+        level = (1.0 - confidence) * math.log1p((math.e - 1.0) * replicates / max_replicates) - spent
         if comparisons * smallest_p(replicates) <= level:
-            found.append(Look(replicates, level))
+            all_looks.append(Look(replicates, level))
             spent += level
-    return found
+    return all_looks
 
 
 def decided(costs: ArrayLike, look: Look, leaders: int = 1) -> bool:
@@ -67,12 +66,14 @@ def decided(costs: ArrayLike, look: Look, leaders: int = 1) -> bool:
     return bool((apart[first].sum(axis=1) == len(values) - 1).all())
 
 
-def look_at(config: Mapping[str, Any], replicates: int) -> Look | None:
+def look_at(replicates: int, entrants: int, max_replicates: int, confidence: float) -> Look | None:
     """The look of an adaptive tournament after so many replicates, if there is one.
 
     Args:
-        config: the tournament as plain values.
         replicates: that have been run.
+        entrants: how many race.
+        max_replicates: at which the tournament ends in any case.
+        confidence: 1 - the error that all looks may spend together.
     """
-    all_looks = looks(len(config["entrants"]), config["max_replicates"], config["confidence"])
+    all_looks = looks(entrants, max_replicates, confidence)
     return next((look for look in all_looks if look.replicates == replicates), None)

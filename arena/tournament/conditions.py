@@ -92,4 +92,18 @@ class Run:
     @property
     def identity(self) -> str:
         """What its car and its random streams are called."""
-        return f"{self.entrant.name}#{self.replicate}"
+        return identity_of(self.entrant.name, self.replicate)
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """The entrant's name, and the replicate."""
+        return self.entrant.name, self.replicate
+
+    def stream(self, seed: int, purpose: str) -> np.random.Generator:
+        """The run's own random numbers for ``purpose``, whoever else races."""
+        return stream(seed, purpose, self.identity)
+
+
+def identity_of(entrant: str, replicate: int) -> str:
+    """What the car and the random streams of a run are called."""
+    return f"{entrant}#{replicate}"

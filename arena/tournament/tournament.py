@@ -10,7 +10,7 @@ import numpy as np
 
 from arena.common.html import represent
 from arena.common.plain import plain
-from arena.statistics.sequential import ADAPTIVE, MOST, looks
+from arena.statistics.sequential import ADAPTIVE, MAX_REPLICATES, looks
 from arena.tournament.conditions import Conditions, Evaluation, Run, Training, _integers
 from arena.tournament.entrant import Entrant
 from arena.tournament.readings import READINGS
@@ -93,12 +93,12 @@ class Tournament:
         object.__setattr__(self, "confidence", confidence)
         if self.replicates != ADAPTIVE:
             return
-        if self.max_replicates > MOST or confidence == 1.0:
+        if self.max_replicates > MAX_REPLICATES or confidence == 1.0:
             raise InvalidValueError(
-                f"adaptive replicates need a confidence below 1 and at most {MOST} replicates"
+                f"adaptive replicates need a confidence below 1 and at most {MAX_REPLICATES} replicates"
             )
         if not looks(len(self.entrants), self.max_replicates, confidence):
-            enough = range(self.max_replicates, MOST)
+            enough = range(self.max_replicates, MAX_REPLICATES)
             least = next((n for n in enough if looks(len(self.entrants), n, confidence)), None)
             raise InvalidValueError(
                 f"max_replicates must be at least {least} to tell {len(self.entrants)} entrants apart at "

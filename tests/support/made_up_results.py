@@ -10,7 +10,7 @@ from agents import MomentumAgent
 from arena import Entrant, Evaluation, Results, Tournament, Training
 from arena.common.npz import pack
 from arena.results.store import Store
-from arena.tournament.outcome import Outcome
+from arena.tournament.outcome import Outcome, Status
 
 LIMIT = 500
 
@@ -37,7 +37,7 @@ def made_up(
     for name, values in steps.items():
         for replicate, value in enumerate(values):
             if value is None:
-                store.add(Outcome(name, replicate, "compiled", "failed", error="ouch"))
+                store.add(Outcome(name, replicate, "compiled", Status.FAILED, error="ouch"))
                 continue
             reached = value < LIMIT
             arrays = pack(
@@ -50,5 +50,5 @@ def made_up(
                 }
             )
             scores = (100.0, value) if reached else (0.0, float("nan"))
-            store.add(Outcome(name, replicate, "compiled", "finished", *scores, iterations, 0.1, arrays))
+            store.add(Outcome(name, replicate, "compiled", Status.FINISHED, *scores, iterations, 0.1, arrays))
     return Results(store)

@@ -32,7 +32,6 @@ from arena.figures import (
 )
 from arena.figures.style import LINES
 from arena.results import UnknownPolicyError
-from arena.results.results import trained
 from arena.statistics.intervals import probability_of_improvement
 
 NOISE = [0.0, 3.0, 1.0, 4.0, 2.0, 6.0, 5.0, 7.0]
@@ -92,7 +91,7 @@ def test_the_learning_curve_is_the_mean_and_the_band_all_replicates(results: Res
 
 def test_the_policy_is_drawn_cell_by_cell(results: Results) -> None:
     given: Any = Figure().add_subplot()
-    agent = trained(results, "sarsa 5x6", 1)
+    agent = results.trained("sarsa 5x6", 1)
     drawn: Any = draw_policy(agent, given)
     assert drawn is given
     best = results.arrays("sarsa 5x6", 1)["values"].argmax(axis=1).reshape(5, 6)
@@ -108,22 +107,22 @@ def test_the_policy_is_drawn_cell_by_cell(results: Results) -> None:
 
 
 def test_cells_that_are_no_even_grid_are_drawn_where_they_are(results: Results) -> None:
-    axes: Any = draw_policy(trained(results, "edges"))
+    axes: Any = draw_policy(results.trained("edges"))
     assert np.allclose(axes.collections[0].get_coordinates()[0, :, 0], [-1.2, -0.7, -0.2, 0.6])
     assert np.allclose(axes.collections[0].get_coordinates()[:, 0, 1], [-0.07, 0.0, 0.03, 0.07])
     assert mesh(axes).shape == (3, 3)
 
 
 def test_agents_without_cells_are_asked_on_a_fine_grid(results: Results) -> None:
-    axes: Any = draw_policy(trained(results, "momentum"))
+    axes: Any = draw_policy(results.trained("momentum"))
     assert np.array_equal(mesh(axes), np.repeat([0, 2], FINE[1] // 2)[:, None].repeat(FINE[0], axis=1))
     assert "asked on a fine grid" in axes.get_title()
     with pytest.raises(UnknownPolicyError, match="'random' drives by chance"):
-        draw_policy(trained(results, "random"))
+        draw_policy(results.trained("random"))
 
 
 def test_visits_have_one_scale_and_add_up(results: Results) -> None:
-    panels: Any = draw_visits(trained(results, "sarsa 7x8")).axes[:4]
+    panels: Any = draw_visits(results.trained("sarsa 7x8")).axes[:4]
     counts = results.arrays("sarsa 7x8", 0)["visits"].reshape(7, 8, 3)
     expected = [*np.moveaxis(counts, 2, 0), counts.sum(axis=2)]
     for axes, count in zip(panels, expected, strict=True):
@@ -132,28 +131,28 @@ def test_visits_have_one_scale_and_add_up(results: Results) -> None:
     assert len(norms) == 1
     assert isinstance(panels[0].collections[-1].norm, LogNorm)
     with pytest.raises(UnknownPolicyError, match="'tiles' counts no visits"):
-        draw_visits(trained(results, "tiles"))
+        draw_visits(results.trained("tiles"))
 
 
 def test_values_are_steps_to_go(results: Results) -> None:
-    agent = trained(results, "sarsa 5x6")
+    agent = results.trained("sarsa 5x6")
     flat, _, surface = draw_value(agent).axes
     assert surface.name == "3d"
     arrays = results.arrays("sarsa 5x6", 0)
     best, never = -arrays["values"].max(axis=1), arrays["visits"].sum(axis=1) == 0
     assert np.array_equal(np.ma.getmaskarray(mesh(flat)), never.reshape(5, 6).T)
     assert np.allclose(mesh(flat).compressed(), best.reshape(5, 6).T[~never.reshape(5, 6).T])
-    tiles = trained(results, "tiles")
+    tiles = results.trained("tiles")
     shown = mesh(draw_value(tiles).axes[0])
     active = np.zeros(tiles.agent.features.active, np.int64)
     tiles.agent.features.fill((-1.2 + 1.8 / FINE[0] * 10.5, -0.07 + 0.14 / FINE[1] * 20.5), active)
     assert shown[20, 10] == pytest.approx(-tiles.agent.weights[active].sum(axis=0).max())
     with pytest.raises(UnknownPolicyError, match="'momentum' has no values"):
-        draw_value(trained(results, "momentum"))
+        draw_value(results.trained("momentum"))
 
 
 def test_drives_are_drawn_over_the_policy(results: Results) -> None:
-    agent = trained(results, "momentum")
+    agent = results.trained("momentum")
     axes: Any = draw_phase(agent, starts=[-0.5, -0.45])
     for line, start in zip((axes.lines[0], axes.lines[2]), (-0.5, -0.45), strict=True):
         assert np.array_equal(np.transpose(line.get_data()), agent.drive(start))

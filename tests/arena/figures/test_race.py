@@ -19,7 +19,6 @@ from arena import Results, load
 from arena.cli import main
 from arena.figures import race, save_race
 from arena.figures.film import GHOST, frames
-from arena.results.results import trained
 from envs import Hill
 from envs.mountain_car_v0 import parallel_env
 from envs.rendering import SIZE
@@ -40,17 +39,17 @@ def test_all_drive_as_they_would_alone(results: Results) -> None:
     driven = race(results, ["momentum", HOSTILE], -0.45, 1)
     assert list(driven.actions) == ["momentum", HOSTILE, GHOST]
     for name in ("momentum", HOSTILE):
-        path = trained(results, name, 1).drive(-0.45)
+        path = results.trained(name, 1).drive(-0.45)
         assert len(driven.actions[name]) == len(path) - 1
         assert (name in driven.reached) == (path[-1, 0] >= Hill().goal_position)
     ((fewest,), _) = optimal_steps(Hill(), [-0.45])
-    assert driven.told[GHOST] == f"{GHOST}: {fewest} steps"
+    assert driven.captions[GHOST] == f"{GHOST}: {fewest} steps"
     assert driven.steps == max(map(len, driven.actions.values()))
 
 
 def test_one_that_does_not_arrive_is_told_so(results: Results) -> None:
     driven = race(results, ["random"])
-    assert driven.told["random"] == "random: 200 steps, not there"
+    assert driven.captions["random"] == "random: 200 steps, not there"
     assert driven.reached == {GHOST}
 
 
@@ -58,7 +57,7 @@ def test_frames_are_the_environment_s_with_the_ghost_half_there(results: Results
     driven = race(results, ["momentum"], -0.5)
     pictures = list(frames(driven))
     assert len(pictures) == driven.steps + 1
-    names = list(driven.told.values())
+    names = list(driven.captions.values())
     seen = []
     for cars in (names, names[:1]):
         env = parallel_env(cars, max_steps=200, render_mode="rgb_array")

@@ -10,7 +10,6 @@ from page_tournament import HOSTILE, hostile_results
 
 from arena import Results, load, quick
 from arena.analysis import leaderboard
-from arena.results.results import trained
 
 
 @pytest.fixture(scope="module")
@@ -41,8 +40,8 @@ def test_a_tournament_is_its_entrants() -> None:
 
 
 def test_a_trained_agent_is_its_policy(results: Results) -> None:
-    drawing = ET.fromstring(trained(results, "sarsa")._repr_html_())  # noqa: S314 (our own)
+    drawing = ET.fromstring(results.trained("sarsa")._repr_html_())  # noqa: S314 (our own)
     assert drawing.tag.endswith("svg")
-    assert "drives by chance" in trained(results, "random")._repr_html_()
-    with_name = trained(results, HOSTILE)._repr_html_()
+    assert "drives by chance" in results.trained("random")._repr_html_()
+    with_name = results.trained(HOSTILE)._repr_html_()
     assert "<script" not in with_name

@@ -17,7 +17,6 @@ from arena.analysis import leaderboard, moving_average
 from arena.cli import main
 from arena.report.page import report
 from arena.results import digest
-from arena.results.results import trained
 from envs import Hill
 
 
@@ -115,7 +114,7 @@ def test_curves_maps_and_drives_are_those_of_the_runs(file: Path, page: str) -> 
         told = drawn["sarsa"]["map"]
         assert told["visits"] == arrays["visits"].ravel().tolist()
         assert told["policy"] == "".join(map(str, arrays["values"].argmax(axis=1)))
-        agent = trained(results, "sarsa")
+        agent = results.trained("sarsa")
         for start, drive in zip(data["starts"], drawn["sarsa"]["drives"], strict=True):
             assert drive == np.rint(1000 * agent.drive(start)[:, 0]).tolist()
     assert drawn["random"]["map"]["policy"] is None

@@ -11,7 +11,6 @@ from page_tournament import HOSTILE, hostile_results
 from arena import load
 from arena.cli import main
 from arena.report.sparklines import LEVELS, blocks, sparkline
-from arena.results.results import trained
 
 
 @pytest.fixture(scope="module")
@@ -46,8 +45,8 @@ def test_a_terminal_shows_curves_and_the_best_policy(
 
 def test_the_blocks_are_the_policy(file: Path) -> None:
     with load(file) as results:
-        _, *momentum = blocks(trained(results, "momentum"))
-        agent = trained(results, "sarsa")
+        _, *momentum = blocks(results.trained("momentum"))
+        agent = results.trained("sarsa")
         best = results.arrays("sarsa")["values"].argmax(axis=1).reshape(6, 7)
     _, *lines = blocks(agent)
     top = {2: "#E69F00", 1: "#F7F7F7", 0: "#0072B2"}

@@ -9,7 +9,7 @@ from arena import Evaluation, Results, Training, paper, quick, run
 from arena.reproduction import compare, published
 from arena.results.store import Store
 from arena.statistics.intervals import correlation, mean_interval
-from arena.tournament.outcome import Outcome
+from arena.tournament.outcome import Outcome, Status
 
 
 def test_the_published_tables_are_the_paper_s() -> None:
@@ -39,7 +39,7 @@ def pretend(factor: float) -> Results:
         name, replicate = one.entrant.name, one.replicate
         length += replicate - 1
         store.add(
-            Outcome(name, replicate, "compiled", "finished", accuracy, length, int(iterations * factor))
+            Outcome(name, replicate, "compiled", Status.FINISHED, accuracy, length, int(iterations * factor))
         )
     return Results(store)
 

@@ -19,7 +19,7 @@ from arena.reproduction import Claim, iterations_spread, published
 from arena.reproduction import claims as paper_claims
 from arena.reproduction.verdicts import holds_claim, measured_claim, number_claim, untestable_claim
 from arena.results.store import Store
-from arena.tournament.outcome import Outcome
+from arena.tournament.outcome import Outcome, Status
 
 FALLING = np.concatenate([np.linspace(2000, 150, 2000), np.full(2000, 150.0)]).astype(np.int64)
 Change = Callable[[str, int], dict[str, Any]]
@@ -40,7 +40,7 @@ def of_the_paper(replicates: int = 11, change: Change = lambda _name, _replicate
                 **change(name, replicate),
             }
             arrays = pack({"lengths": FALLING})
-            store.add(Outcome(name, replicate, "compiled", "finished", **scores, arrays=arrays))
+            store.add(Outcome(name, replicate, "compiled", Status.FINISHED, **scores, arrays=arrays))
     store.release()
     return Results(store)
 

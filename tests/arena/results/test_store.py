@@ -25,7 +25,7 @@ from arena.report.tables import render
 from arena.reproduction import compare
 from arena.results import digest
 from arena.results.store import SCHEMA_VERSION, Store
-from arena.tournament.outcome import Outcome, score
+from arena.tournament.outcome import Outcome, Status, score
 from envs.foundation.errors import ArenaError
 
 
@@ -166,7 +166,7 @@ def test_a_file_that_cannot_be_written_is_told(small: Tournament, tmp_path: Path
 def test_a_run_is_kept_once_it_is_added(tmp_path: Path, small: Tournament) -> None:
     path = tmp_path / "s.sqlite"
     store = Store.create(path, small.to_dict())
-    store.add(Outcome("q", 1, "compiled", "finished", 50.0, 100.0, 7, 0.1, pack({"x": np.zeros(2)})))
+    store.add(Outcome("q", 1, "compiled", Status.FINISHED, 50.0, 100.0, 7, 0.1, pack({"x": np.zeros(2)})))
     with load(path) as other:  # another connection sees it, though the first is still open
         assert other.frame().accuracy.tolist() == [50.0]
     assert store.finished() == {("q", 1)}

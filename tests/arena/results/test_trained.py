@@ -13,7 +13,6 @@ from agents.algorithms.sarsa_lambda import SarsaLambda
 from agents.contract import Observation
 from arena import Entrant, Evaluation, Results, Tournament, Training, run
 from arena.results import UnknownPolicyError
-from arena.results.results import trained
 
 
 class Secretive:
@@ -58,7 +57,7 @@ def results() -> Iterator[Results]:
 @pytest.mark.parametrize("entrant", [one.name for one in ENTRANTS])
 def test_it_drives_as_it_did_in_the_test(results: Results, entrant: str) -> None:
     for replicate in (0, 1):
-        again = trained(results, entrant, replicate)
+        again = results.trained(entrant, replicate)
         arrays = results.arrays(entrant, replicate)
         for name in {"values", "visits", "weights"} & arrays.keys():
             assert np.array_equal(getattr(again.agent, name), arrays[name])
@@ -72,13 +71,13 @@ def test_it_drives_as_it_did_in_the_test(results: Results, entrant: str) -> None
 
 def test_what_is_not_in_the_arrays_is_missed(results: Results) -> None:
     with pytest.raises(UnknownPolicyError, match="cannot be made again"):
-        trained(results, "secretive")  # the class is of this file, not installed
+        results.trained("secretive")  # the class is of this file, not installed
     with pytest.raises(UnknownPolicyError, match="replicate 1 of 'broken' failed"):
-        trained(results, "broken", 1)
+        results.trained("broken", 1)
     with pytest.raises(ValueError, match=r"entrant must be one of .* got 'nobody'"):
-        trained(results, "nobody")
+        results.trained("nobody")
     with pytest.raises(ValueError, match="replicate must be one that 'sarsa' has run, got 2"):
-        trained(results, "sarsa", 2)
+        results.trained("sarsa", 2)
 
 
 def test_an_agent_that_drives_otherwise_than_it_did_is_refused(
@@ -86,4 +85,4 @@ def test_an_agent_that_drives_otherwise_than_it_did_is_refused(
 ) -> None:
     monkeypatch.setattr(MomentumAgent, "greedy", lambda self, observation: 0)
     with pytest.raises(UnknownPolicyError, match="'momentum' has learned more than the arrays"):
-        trained(results, "momentum")
+        results.trained("momentum")

@@ -28,9 +28,9 @@ from arena.statistics.permutation import (
     holm,
     needed_replicates,
     paired_permutation_test,
+    power_warning,
     sign_flip_test,
     smallest_p,
-    too_few,
 )
 from arena.statistics.ranks import rank_distribution, tie_groups
 
@@ -197,16 +197,16 @@ def test_the_needed_replicates() -> None:
     assert needed_replicates(6, 0.05) == 8  # 6 * 2 / 2^8 = 0.047
     assert needed_replicates(1, 0.25) == 3
     assert needed_replicates(10**6, 0.05) is None
-    assert too_few(6, 1, 0.95) == ""
-    assert too_few(3, 1, 0.95) == (
+    assert power_warning(6, 1, 0.95) == ""
+    assert power_warning(3, 1, 0.95) == (
         "With 3 replicates no difference can be shown at 95% confidence in 1 comparison: "
         "6 or more are needed."
     )
-    assert too_few(1, 6, 0.9) == (
+    assert power_warning(1, 6, 0.9) == (
         "With 1 replicate no difference can be shown at 90% confidence in 6 comparisons: "
         "7 or more are needed."
     )
-    assert "no number of them is enough" in too_few(90, 10**6, 0.95)
+    assert "no number of them is enough" in power_warning(90, 10**6, 0.95)
 
 
 # Holm.

@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+# Neighbouring tests often share machine code: each worker gets half of them, and then from who has most left.
+TWO := -n 2 --dist worksteal --durations=25
 
 .PHONY: tournament test slow check bench clean
 .DELETE_ON_ERROR:
@@ -9,13 +11,14 @@ BIN := $(VENV)/bin
 tournament: $(VENV)/.installed  ## the paper's tournament: tables on the screen, results in runs/paper.sqlite
 	$(BIN)/arena run paper
 
-test: $(VENV)/.test  ## all but the slow tests
-	$(BIN)/python -m pytest -m "not slow" -n 2
+test: $(VENV)/.test  ## the fast tests
+	$(BIN)/python -m pytest -m fast $(TWO)
 
-slow: $(VENV)/.test  ## the slow tests
-	$(BIN)/python -m pytest -m slow
+slow: $(VENV)/.test  ## all others, those that measure time last and alone
+	$(BIN)/python -m pytest -m "not fast and not timing" $(TWO)
+	$(BIN)/python -m pytest -m timing -n 0 --durations=25
 
-check: $(VENV)/.dev  ## what CI runs: format, lint, types, rooms, tests
+check: $(VENV)/.dev  ## format, lint, types, rooms, and the fast tests with their coverage
 	$(BIN)/python scripts/check
 
 bench: $(VENV)/.installed  ## the compiled learning loop beside the same loop written by hand

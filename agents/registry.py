@@ -5,6 +5,8 @@ those that this process registers.
 """
 
 import inspect
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
@@ -103,6 +105,23 @@ def forget(origin: str) -> None:
     """Make unknown what ``origin`` has registered."""
     for name in [name for name, entry in _registered.items() if entry.origin == origin]:
         del _registered[name]
+
+
+@contextmanager
+def isolated() -> Iterator[None]:
+    """Meanwhile it is as in a new process: nothing is registered, and installed packages are looked for anew.
+
+    At the end what was registered before is known again, and what was registered meanwhile no more.
+    """
+    before = dict(_registered)
+    _registered.clear()
+    _installed.cache_clear()
+    try:
+        yield
+    finally:
+        _registered.clear()
+        _registered.update(before)
+        _installed.cache_clear()
 
 
 def all_agents() -> tuple[dict[str, Registered], list[str]]:

@@ -10,7 +10,7 @@ from typing import Any
 from arena.analysis.curves import WINDOW
 from arena.analysis.scores import SCORES, decimals, scores_of
 from arena.analysis.standings import Leaderboard, check_confidence, leaderboard
-from arena.report.page_data import MOST_DRAWN, page_data
+from arena.report.page_data import page_data
 from arena.reproduction.claims import results_claims
 from arena.reproduction.published_values import MINIMUM_ACCURACY
 from arena.reproduction.tables import compare
@@ -37,8 +37,12 @@ def write_report(results: Results, path: Path, by: str = "steps", confidence: fl
     path.write_text(report(results, by, confidence), encoding="utf-8")
 
 
-def report(results: Results, by: str = "steps", confidence: float = 0.95) -> str:
-    """The page as a text; see ``write_report``."""
+def report(results: Results, by: str = "steps", confidence: float = 0.95, most_drawn: int = 100) -> str:
+    """The page as a text; see ``write_report``.
+
+    Of at most ``most_drawn`` entrants, the first ones by place, there are curves, maps and drives; the
+    leaderboard has all.
+    """
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -52,7 +56,7 @@ def report(results: Results, by: str = "steps", confidence: float = 0.95) -> str
     check_confidence(confidence)
     scores = scores_of(results, by)
     board = leaderboard(results, by, confidence, scores)
-    data = page_data(results, scores, board)
+    data = page_data(results, scores, board, most_drawn)
     paper, config = compare(results), results.config
     return environment.get_template("page.html").render(
         config=config,
@@ -64,7 +68,7 @@ def report(results: Results, by: str = "steps", confidence: float = 0.95) -> str
         rows=list(_rows(results, board)),
         window=WINDOW,
         replicate=0,
-        most_drawn=MOST_DRAWN,
+        most_drawn=most_drawn,
         ghost=data["ghost"] is not None,
         paper=paper,
         least=f"{MINIMUM_ACCURACY:g}",

@@ -16,21 +16,21 @@ from arena.results.trained import Trained, UnknownPolicyError, drive
 from arena.statistics.permutation import is_significant
 from envs.foundation.errors import InvalidValueError
 
-MOST_DRAWN = 100
-"""Entrants with curves, maps and drives: the first ones by place. The leaderboard has all."""
-
 STARTS = 5  # of the race, evenly over the range of starts
 _POINTS = 120  # of a curve
 _THOUSANDTHS = 1000  # positions of the race are whole thousandths
 
 
-def page_data(results: Results, scores: Scores, board: Leaderboard, replicate: int = 0) -> dict[str, Any]:
+def page_data(
+    results: Results, scores: Scores, board: Leaderboard, most_drawn: int, replicate: int = 0
+) -> dict[str, Any]:
     """The data, and under ``unavailable`` the entrants whose policies cannot be made again, with the reasons.
 
     Args:
         results: of the tournament.
         scores: of all entrants.
         board: by one of them.
+        most_drawn: entrants with curves, maps and drives, the first ones by place.
         replicate: whose policies are drawn.
     """
     conditions = results.conditions
@@ -39,7 +39,7 @@ def page_data(results: Results, scores: Scores, board: Leaderboard, replicate: i
     starts = np.linspace(hill.min_start, hill.max_start, STARTS).tolist()
     drawn, unavailable = [], []
     at = _sampled(conditions.training.episodes)
-    for number, name in enumerate(names[:MOST_DRAWN]):
+    for number, name in enumerate(names[:most_drawn]):
         try:
             policy_data = _policy(results.trained(name, replicate), starts)
         except InvalidValueError as error:  # not run yet, failed, or not to be made again

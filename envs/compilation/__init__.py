@@ -1,5 +1,19 @@
 """Plain Python loops compiled together with the plain methods of the named tuples that they drive."""
 
-from envs.compilation.kernels import CompilationError, cache_directory, compile_loop, entry_point
+from envs.compilation.kernels import (
+    CompilationError,
+    KernelInfo,
+    cache_directory,
+    compile_loop,
+    entry_point,
+    kernel_info,
+)
 
-__all__ = ["CompilationError", "cache_directory", "compile_loop", "entry_point"]
+__all__ = [
+    "CompilationError",
+    "KernelInfo",
+    "cache_directory",
+    "compile_loop",
+    "entry_point",
+    "kernel_info",
+]

@@ -14,16 +14,29 @@ import threading
 from collections.abc import Callable, Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from envs.compilation.numba_methods import _offer
 from envs.compilation.reachable import Reached
 from envs.foundation.errors import InvalidTypeError
 
 _lock = threading.RLock()
-_ready: dict[str, Callable[..., Any]] = {}
+_ready: dict[str, tuple[Callable[..., Any], "KernelInfo"]] = {}
 # The interpreter's arithmetic without its ZeroDivisionError, which a kernel of many threads cannot raise.
 _LOOP = {"nogil": True, "error_model": "numpy"}
+
+
+class KernelInfo(NamedTuple):
+    """What a compiled loop is like.
+
+    Attributes:
+        fingerprint: of everything compiled in; hexadecimal.
+        counts_references: whether it counts references to arrays, because code that it reaches allocates
+            memory; a step may take twice as long then.
+    """
+
+    fingerprint: str
+    counts_references: bool
 
 
 class CompilationError(InvalidTypeError):
@@ -42,13 +55,16 @@ def compile_loop(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
     Raises:
         CompilationError: when numba cannot compile it.
     """
-    reached = Reached(loop, *example)
-    fingerprint = reached.fingerprint()
-    with _lock:
-        if fingerprint not in _ready:
-            _offer(reached)
-            _ready[fingerprint] = _compile(loop, example, fingerprint, importable=_importable(example))
-        return _ready[fingerprint]
+    return _compiled(loop, example)[0]
+
+
+def kernel_info(loop: Callable[..., Any], *example: Any) -> KernelInfo:
+    """What ``loop``, compiled for arguments of the types of ``example``, is like.
+
+    Raises:
+        CompilationError: when numba cannot compile it.
+    """
+    return _compiled(loop, example)[1]
 
 
 def entry_point(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
@@ -85,9 +101,19 @@ def _writable(folder: Path) -> Path | None:
     return folder
 
 
+def _compiled(loop: Callable[..., Any], example: tuple[Any, ...]) -> tuple[Callable[..., Any], KernelInfo]:
+    reached = Reached(loop, *example)
+    fingerprint = reached.fingerprint()
+    with _lock:
+        if fingerprint not in _ready:
+            _offer(reached)
+            _ready[fingerprint] = _compile(loop, example, fingerprint, importable=_importable(example))
+        return _ready[fingerprint]
+
+
 def _compile(
     loop: Callable[..., Any], example: tuple[Any, ...], fingerprint: str, *, importable: bool
-) -> Callable[..., Any]:
+) -> tuple[Callable[..., Any], KernelInfo]:
     import numba
 
     folder = cache_directory() if importable else None
@@ -102,7 +128,7 @@ def _compile(
         except Exception as error:  # numba raises nearly anything
             problem = error
         else:
-            return kernel  # type: ignore[no-any-return]  # numba is untyped
+            return kernel, KernelInfo(fingerprint, counting)
     raise CompilationError(_reason(problem)) from problem
 
 

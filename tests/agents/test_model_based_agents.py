@@ -456,7 +456,7 @@ def test_missing_scikit_learn_is_told_in_a_sentence(monkeypatch: pytest.MonkeyPa
         FittedQIteration.create(Hill())
 
 
-@pytest.mark.slow
+@pytest.mark.statistical
 def test_thirty_episodes_teach_to_drive() -> None:
     race = Tournament(
         (Entrant("it", FittedQIteration),),
@@ -510,7 +510,7 @@ COMPILED: list[tuple[type[Any], dict[str, Any]]] = [
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(("cls", "parameters"), COMPILED, ids=[cls.__name__ for cls, _ in COMPILED])
 def test_compiled_agents_allocate_nothing_and_leave_the_interpreters_bits(
     cls: type[Any], parameters: dict[str, Any]
@@ -519,7 +519,7 @@ def test_compiled_agents_allocate_nothing_and_leave_the_interpreters_bits(
     assert_allocates_nothing(cls, parameters)
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("cls", [DynaQ, PrioritizedSweeping, RMax])
 @pytest.mark.parametrize("kind", KINDS, ids=["uniform", "quantile", "kmeans"])
 def test_every_kind_of_cells_and_of_exploration(cls: type[Any], kind: dict[str, Any]) -> None:

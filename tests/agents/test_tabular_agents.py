@@ -336,7 +336,7 @@ COMPILED: list[tuple[type[Any], dict[str, Any]]] = [
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(("cls", "parameters"), COMPILED, ids=[cls.__name__ for cls, _ in COMPILED])
 def test_compiled_agents_allocate_nothing_and_leave_the_interpreters_bits(
     cls: type[Any], parameters: dict[str, Any]
@@ -346,7 +346,7 @@ def test_compiled_agents_allocate_nothing_and_leave_the_interpreters_bits(
     assert_allocates_nothing(cls, given)
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("cls", [ExpectedSarsa, DoubleQLearning, NStepSarsa, MonteCarlo, TutorialQLearning])
 @pytest.mark.parametrize("kind", KINDS, ids=["uniform", "quantile", "kmeans"])
 def test_every_kind_of_cells_and_of_exploration(cls: type[Any], kind: dict[str, Any]) -> None:

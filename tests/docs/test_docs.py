@@ -29,19 +29,16 @@ def succeed(*arguments: str, cwd: Path) -> str:
 
 
 def blocks(language: str) -> list[object]:
-    """The code blocks of all pages in ``language``, as parameters of a test; Python of docs is slow."""
+    """The code blocks of all pages in ``language``, as parameters of a test."""
     return [
-        pytest.param(
-            code,
-            id=f"{page.name}-{number}",
-            marks=[pytest.mark.slow] if language == "python" and page != PAGES[0] else [],
-        )
+        pytest.param(code, id=f"{page.name}-{number}")
         for page in PAGES
         if page != SESSION
         for number, code in enumerate(re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL))
     ]
 
 
+@pytest.mark.docs
 @pytest.mark.parametrize("code", blocks("python"))
 def test_python_examples_run(code: str, tmp_path: Path) -> None:
     (tmp_path / "example.py").write_text(code)
@@ -53,7 +50,7 @@ def test_toml_examples_are_tournaments(code: str) -> None:
     assert from_dict(tomllib.loads(code)).runs
 
 
-@pytest.mark.slow
+@pytest.mark.docs
 def test_the_page_on_plugins_is_a_session_that_goes_as_it_says(tmp_path: Path) -> None:
     done = {"toml": 0, "python": 0, "console": 0}
     shutil.copy(ROOT / "tests" / "support" / "stand_ins" / "stable_baselines3.py", tmp_path)
@@ -128,38 +125,28 @@ def test_every_reading_is_documented() -> None:
         assert f"| `{name}` | {reading.description} |" in text
 
 
+@pytest.mark.docs
 @pytest.mark.parametrize(
     ("script", "arguments", "expected"),
     [
         ("grids_of_one_algorithm.py", "--episodes 5 --replicates 1 --bins 4 5 --jobs 1", "(5, 4)"),
         ("algorithms_on_one_grid.py", "--episodes 5 --replicates 2 --bins 4 4 --jobs 2", "momentum"),
         ("bench_learning.py", "--episodes 30 --repeats 1", "QLearning: "),
-        pytest.param(
-            "bench_walk.py",
-            "--episodes 2 --part 1 --repeats 1",
-            "million steps a second",
-            marks=pytest.mark.slow,
-        ),
-        pytest.param(
+        ("bench_walk.py", "--episodes 2 --part 1 --repeats 1", "million steps a second"),
+        (
             "bench_envs.py",
             "--seconds 0.01 --repeats 1 --cars 2 --vectors 3",
             "| vector | Gymnasium's sync vector | ratio |",
-            marks=pytest.mark.slow,
         ),
         ("measured_coverage.py", "--trials 3 --parts mean", "| mean, Student's t | normal | 5 | 95.0% |"),
-        pytest.param(
-            "fit_of_readings.py",
-            "--replicates 2 --readings literal --jobs 2",
-            "| `literal` | zero table",
-            marks=pytest.mark.slow,
-        ),
+        ("fit_of_readings.py", "--replicates 2 --readings literal --jobs 2", "| `literal` | zero table"),
     ],
 )
 def test_scripts_run(script: str, arguments: str, expected: str, tmp_path: Path) -> None:
     assert expected in succeed(str(ROOT / "scripts" / script), *arguments.split(), cwd=tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.docs
 def test_the_readme_shows_what_the_command_prints(tmp_path: Path) -> None:
     output = succeed("-m", "arena", "run", "paper", cwd=tmp_path)
     printed = "\n".join(line.rstrip() for line in output.splitlines())
@@ -168,13 +155,13 @@ def test_the_readme_shows_what_the_command_prints(tmp_path: Path) -> None:
     assert shown.group(1) == printed
 
 
-@pytest.mark.slow
+@pytest.mark.timing
 def test_the_learning_loop_keeps_up_with_one_written_by_hand() -> None:
     for name, row in json.loads(succeed("scripts/bench_learning.py", "--json", cwd=ROOT)).items():
         assert row["ratio"] <= 1.5, name
 
 
-@pytest.mark.slow
+@pytest.mark.timing
 def test_the_environments_keep_up_with_bare_dictionaries_and_leave_gymnasium_s_vector_behind() -> None:
     output = succeed("scripts/bench_envs.py", "--seconds=0.2", "--vectors=64", cwd=ROOT)
     rows = [line.strip("| ").split(" | ") for line in output.splitlines() if re.match(r"\| \d", line)]
@@ -183,7 +170,7 @@ def test_the_environments_keep_up_with_bare_dictionaries_and_leave_gymnasium_s_v
     assert float(rows[4][3]) > 20  # 60
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_the_paper_s_tournament_stays_under_a_gibibyte(tmp_path: Path) -> None:
     code = """
 import os, threading

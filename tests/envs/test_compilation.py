@@ -57,7 +57,7 @@ def ask(folder: Path) -> str:
     return done.stdout.strip()
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_kernels_are_cached_across_processes_and_never_stale_after_an_edit_anywhere(tmp_path: Path) -> None:
     plugin, helper = tmp_path / "plugin.py", tmp_path / "helper.py"
     plugin.write_text(PLUGIN)

@@ -10,22 +10,21 @@ import pytest
 from bits import bits_of
 from paths import ROOT
 
-from agents import QLearning, registry
+from agents import QLearning
 from arena import Entrant, Evaluation, Tournament, Training, load_plugin, run
 from arena.testing import findings
 from envs import Hill
 
 pytest.importorskip("stable_baselines3", reason="Stable-Baselines3, and PyTorch with it, is not installed")
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.docs
 
 SCRIPT = ROOT / "scripts" / "dqn_entrant.py"
 SMALL = {"width": 16, "batch_size": 16, "learning_starts": 50, "train_every": 8, "gradient_steps": 2}
 
 
 @pytest.fixture
-def agent(monkeypatch: pytest.MonkeyPatch) -> Any:
+def agent(isolated_registry: None) -> Any:
     """The class, loaded as a plugin."""
-    monkeypatch.setattr(registry, "_registered", {})
     return load_plugin(SCRIPT)["sb3-dqn"]
 
 

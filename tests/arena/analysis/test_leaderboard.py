@@ -127,7 +127,7 @@ def test_regret_is_what_is_beyond_a_bound_for_each_start() -> None:
     assert set(scores.values) == {*SCORES, "regret_median", "regret_90"}
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_nobody_beats_the_bounds_that_are_computed_and_the_optimum_attains_them() -> None:
     entrants = (Entrant("optimal", Optimal), Entrant("momentum", MomentumAgent), Entrant("lost", RandomAgent))
     tournament = Tournament(

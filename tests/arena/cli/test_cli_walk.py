@@ -167,7 +167,7 @@ def test_an_interruption_before_anything_was_finished(
     assert not Path("walk.json").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.docs
 def test_the_page_shows_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -> None:
     printed = "\n".join(line.rstrip() for line in told(capsys).splitlines())
     page = (ROOT / "docs" / "walk.md").read_text()
@@ -180,7 +180,7 @@ def test_the_page_shows_what_the_command_prints(capsys: pytest.CaptureFixture[st
     assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == example[2]
 
 
-@pytest.mark.slow
+@pytest.mark.docs
 def test_the_page_on_physics_shows_what_the_script_prints() -> None:
     command = [sys.executable, str(ROOT / "scripts" / "energies.py"), "--out", "energies.png"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
@@ -188,7 +188,7 @@ def test_the_page_on_physics_shows_what_the_script_prints() -> None:
     assert Path("energies.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.slow
+@pytest.mark.system
 @pytest.mark.skipif(sys.platform == "win32", reason="sends POSIX signals")
 def test_ctrl_c_reaches_all_workers() -> None:
     command = [sys.executable, "-m", "arena", "walk", "--episodes", "100000", "--jobs", "2", "--json"]

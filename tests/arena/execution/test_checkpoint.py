@@ -123,7 +123,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_a_killed_tournament_goes_on_in_the_middle_of_its_runs(tmp_path: Path) -> None:
     (tmp_path / "long.py").write_text(LONG)
 

@@ -17,6 +17,7 @@ from paths import ROOT
 
 from arena import load
 from arena.cli import main
+from arena.results import digest
 
 RACE = runpy.run_path(str(ROOT / "scripts" / "kill_and_continue.py"))["RACE"]
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="sends POSIX signals")
@@ -45,12 +46,12 @@ def start(*options: str) -> subprocess.Popen[bytes]:
         return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said)
 
 
-def digest(file: Path) -> str:
-    command = [sys.executable, "-m", "arena", "digest", str(file)]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+def digest_of(file: str) -> str:
+    with load(file) as results:
+        return digest(results)
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_killed_at_twenty_random_moments_and_continued_the_digest_is_that_of_an_uninterrupted_run() -> None:
     command = [sys.executable, str(ROOT / "scripts" / "kill_and_continue.py"), "--kills", "20"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=900)
@@ -60,7 +61,7 @@ def test_killed_at_twenty_random_moments_and_continued_the_digest_is_that_of_an_
 
 @POSIX
 @pytest.mark.usefixtures("interruptible")
-@pytest.mark.slow
+@pytest.mark.system
 def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
     Path("race.toml").write_text(RACE.replace("replicates = 8", "replicates = 60"))
     process = start("--seed", "3")
@@ -81,7 +82,7 @@ def test_an_interrupted_run_says_how_to_continue(race: Path) -> None:
     assert process.wait(120) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
     Path("race.toml").write_text(RACE.replace("replicates = 8", "replicates = 300"))
     process = start()
@@ -95,7 +96,6 @@ def test_a_second_process_on_one_file_is_refused(race: Path) -> None:
     process.wait(10)
 
 
-@pytest.mark.slow
 def test_digests_ignore_what_may_differ_and_nothing_else(
     race: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -104,8 +104,8 @@ def test_digests_ignore_what_may_differ_and_nothing_else(
         text = re.sub("episodes = 1500", "episodes = 3", RACE)
         Path("race.toml").write_text(text)
         assert main(["run", "race.toml", *small]) == 0
-    assert digest(Path("a.sqlite")) == digest(Path("b.sqlite"))
-    before = digest(Path("a.sqlite"))
+    before = digest_of("a.sqlite")
+    assert digest_of("b.sqlite") == before
     capsys.readouterr()
     for change in (
         "UPDATE runs SET iterations = iterations + 1 WHERE entrant = 'q-learning'",
@@ -118,7 +118,7 @@ def test_digests_ignore_what_may_differ_and_nothing_else(
         connection.execute(change)
         connection.commit()
         connection.close()
-        assert digest(Path("c.sqlite")) != before
+        assert digest_of("c.sqlite") != before
         if change.startswith("UPDATE"):
             assert main(["verify", "c.sqlite"]) == 1
             assert re.match(r"replicate 0 of '.*' differs in \w+", capsys.readouterr().out)
@@ -126,6 +126,7 @@ def test_digests_ignore_what_may_differ_and_nothing_else(
     assert capsys.readouterr().out == "no difference\n"
 
 
+@pytest.mark.system
 def test_failures_are_told_by_the_exit_code_if_asked_or_if_nothing_finished(
     race: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -50,7 +50,7 @@ def tournament(*entrants: Entrant) -> Tournament:
     )
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_every_kind_of_failure_is_told_and_the_healthy_are_as_without_it(tmp_path: Path) -> None:
     with run(tournament(*HEALTHY), n_jobs=2) as results:
         expected = bits_of(results)[1]
@@ -67,6 +67,7 @@ def test_every_kind_of_failure_is_told_and_the_healthy_are_as_without_it(tmp_pat
         assert reason in reasons[kind.__name__]
 
 
+@pytest.mark.system
 @pytest.mark.parametrize("kind", [failing.ExitsAtOnce, failing.Hangs])
 def test_a_lost_worker_is_told_with_one_job_too_where_there_are_limits(kind: type) -> None:
     limited = replace(tournament(Entrant("bad", kind), HEALTHY[0]), time_limit=3.0)

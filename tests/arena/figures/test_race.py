@@ -94,7 +94,7 @@ def test_the_film_is_one(results: Results, tmp_path: Path) -> None:
     assert b"ftyp" in (tmp_path / "race.mp4").read_bytes()[:16]
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_the_command_takes_names_with_and_without_the_option(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -137,7 +137,7 @@ def test_without_ffmpeg_a_film_is_refused(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is a screen")
-@pytest.mark.slow
+@pytest.mark.system
 def test_without_a_screen_one_line_says_so(file: Path) -> None:
     pytest.importorskip("pygame")
     hidden = {"DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"}

@@ -14,7 +14,7 @@ from arena import load
 
 PACKAGE = ROOT / "tests" / "plugin_package"
 ORIGIN = "package example-drivers 1.2.3"
-LACKS = "TypeError: agent must have the methods act, learn, greedy; Mute lacks greedy"
+LACKS = "InvalidTypeError: agent must have the methods act, learn, greedy; Mute lacks greedy"
 REFUSED = [
     f"agent 'crasher' of {ORIGIN} is broken: RuntimeError: no driver today",
     f"agent 'leaver' of {ORIGIN} is broken: SystemExit: a module should not do this",
@@ -42,7 +42,7 @@ agent = "sarsa"
 parameters = { bins = 5 }
 """
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.system
 
 
 @pytest.fixture(scope="module")

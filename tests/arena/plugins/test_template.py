@@ -24,10 +24,9 @@ METHODS = ["create", "act", "learn", "greedy"]
 
 
 @pytest.fixture(autouse=True)
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, isolated_registry: None) -> None:
     """An empty current folder; what a test registers, no other finds."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(registry, "_registered", {})
 
 
 def test_both_files_are_written_and_the_next_step_is_told(capsys: pytest.CaptureFixture[str]) -> None:
@@ -54,7 +53,7 @@ def test_the_agent_learns_to_drive() -> None:
     assert frame.accuracy.mean() > 80.0
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_its_test_passes_where_its_author_runs_it() -> None:
     assert main(["new-agent", "my-agent"]) == 0
     command = [sys.executable, "-m", "pytest", "-q", "-W", "error"]
@@ -68,7 +67,7 @@ def test_its_test_passes_where_its_author_runs_it() -> None:
     assert "FAILED test_my_agent.py::test_contract[my-agent-actions_are_valid]" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_the_command_checks_the_new_agent() -> None:
     assert main(["new-agent", "my-agent"]) == 0
     command = [sys.executable, "-m", "arena", "check", "my_agent.py"]
@@ -194,10 +193,7 @@ def test_the_agent_explains_itself_and_its_test_is_complete() -> None:
     compile(TEST.format(class_name="It", module="it"), "test_it.py", "exec")
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(
-    "PYTEST_XDIST_WORKER" in os.environ, reason="other tests beside it would be measured, too"
-)
+@pytest.mark.timing
 def test_a_step_takes_at_most_half_as_long_again_as_the_built_in_q_learning_s() -> None:
     main(["new-agent", "my-agent"])
     entrant = Entrant("it", load_plugin("my_agent.py")["my-agent"])

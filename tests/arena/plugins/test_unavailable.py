@@ -54,10 +54,9 @@ sweep = { bins = [[4, 5]], whim = [0.0, 0.5] }
 
 
 @pytest.fixture(autouse=True)
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, isolated_registry: None) -> Path:
     """An empty current folder; what a test registers, no other finds."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(registry, "_registered", {})
     Path("race.toml").write_text(f'plugins = ["bad.py"]\n{RACE}')
     return tmp_path
 
@@ -73,9 +72,8 @@ def package(here: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     module = here / "broken_drivers.py"
     module.write_text(BROKEN)
     monkeypatch.syspath_prepend(str(here))
-    registry._installed.cache_clear()
-    yield module
-    registry._installed.cache_clear()
+    with registry.isolated():
+        yield module
     sys.modules.pop("broken_drivers", None)
 
 
@@ -215,8 +213,8 @@ def test_of_a_broken_package_only_the_entrants_fail_and_they_go_on_once_it_is_re
     with pytest.raises(ValueError, match=f"^{re.escape(line)}"):
         agent_class("driver")
     package.write_text(DRIVER)
-    registry._installed.cache_clear()  # as in a new process
-    assert statuses(race(None)) == dict.fromkeys(["momentum", *SWEPT], "finished")
+    with registry.isolated():  # as in a new process
+        assert statuses(race(None)) == dict.fromkeys(["momentum", *SWEPT], "finished")
 
 
 def test_runs_of_a_package_that_has_broken_cannot_be_verified(
@@ -226,8 +224,8 @@ def test_runs_of_a_package_that_has_broken_cannot_be_verified(
     race(None).close()
     package.write_text(BROKEN)
     sys.modules.pop("broken_drivers")
-    registry._installed.cache_clear()
-    assert main(["verify", "race.sqlite"]) == 2
+    with registry.isolated():  # as in a new process
+        assert main(["verify", "race.sqlite"]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("arena: agent 'driver' of package broken-drivers 1 is broken: SyntaxError: ")

@@ -152,11 +152,9 @@ def test_unfinished_and_failed_tournaments_have_pages() -> None:
             data_of(report(results))
 
 
-def test_a_hundred_have_curves_and_all_have_places(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("arena.report.page_data.MOST_DRAWN", 2)
-    monkeypatch.setattr("arena.report.page.MOST_DRAWN", 2)
+def test_the_first_have_curves_and_all_have_places() -> None:
     with made_up({name: [100.0 + k] for k, name in enumerate("abcd")}) as results:
-        page = report(results)
+        page = report(results, most_drawn=2)
     assert len(data_of(page)["drawn"]) == 2
     assert len(data_of(page)["names"]) == 4
     assert "of the first 2 by place" in Told(page).text

@@ -93,7 +93,7 @@ def test_correlations() -> None:
     assert math.isnan(correlation([1], [2]))
 
 
-@pytest.mark.slow
+@pytest.mark.statistical
 def test_the_iterations_of_the_paper_are_reproduced_in_shape() -> None:
     tournament = paper(replicates=2)
     assert tournament.training == Training()
@@ -106,7 +106,7 @@ def test_the_iterations_of_the_paper_are_reproduced_in_shape() -> None:
     assert -15.0 < found.iterations_difference < -5.0
 
 
-@pytest.mark.slow
+@pytest.mark.statistical
 def test_a_better_reading_fits_better() -> None:
     with run(paper(replicates=1, reading="bootstrapped-goal"), n_jobs=2) as results:
         found = compare(results)

@@ -23,7 +23,7 @@ def test_every_built_in_agent_that_races_in_a_moment_is_in_the_field() -> None:
     assert {name for name, agent in BUILT_IN.items() if agent not in entered} <= slow
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_the_field_races_compiled() -> None:
     short = Tournament(
         field(replicates=1).entrants,
@@ -36,7 +36,7 @@ def test_the_field_races_compiled() -> None:
     assert set(frame["status"]) == {"finished"}
 
 
-@pytest.mark.slow
+@pytest.mark.docs
 def test_the_search_goes_on_where_it_stopped_and_writes_a_tournament(tmp_path: Path) -> None:
     script = str(ROOT / "scripts" / "tune_field.py")
     for trials in ("1", "2"):
@@ -55,7 +55,7 @@ def test_the_search_goes_on_where_it_stopped_and_writes_a_tournament(tmp_path: P
     assert [entrant.name for entrant in found.entrants] == ["expected-sarsa", *FIXED]
 
 
-@pytest.mark.slow
+@pytest.mark.docs
 @pytest.mark.parametrize("name", ["watkins-q-lambda", "q-learning", "xiao"])
 def test_the_readme_shows_what_the_field_prints(name: str) -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")

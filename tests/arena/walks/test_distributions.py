@@ -73,7 +73,7 @@ def test_a_sample_is_recognized(family: Any) -> None:
     assert fits[-1].p_value == 1 / 40
 
 
-@pytest.mark.slow
+@pytest.mark.statistical
 def test_p_values_of_true_families_are_uniform() -> None:
     # Without a fit to each sample of the bootstrap they would nearly all be above 1/2.
     rng = np.random.default_rng(3)

@@ -5,7 +5,6 @@ import math
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from typing import Any
 
 import joblib
@@ -125,19 +124,19 @@ def test_progress_is_told_and_what_was_finished_survives_an_interruption() -> No
     assert same(stopped.value.walk, random_walk(50, NEAR, n_jobs=1))
 
 
-def test_after_an_interruption_no_episode_is_missing_among_those_that_are_left(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def out_of_order(_: int, function: Any, tasks: list[Any]) -> Iterator[Any]:
-        yield function(*tasks[2])
-        yield function(*tasks[0])
-        raise KeyboardInterrupt
+def test_after_an_interruption_no_episode_is_missing_among_those_that_are_left() -> None:
+    # Without an engine a car that starts near the bottom never climbs out. Of the first 75 episodes only the
+    # 40th is such a one, so that the 26th to the 50th are finished long after the others.
+    goal = -math.pi / 6 + 0.0005
+    hill = Hill(thrust=0.0, min_start=-0.7, max_start=goal, goal_position=goal)
 
-    expected = random_walk(25, NEAR, n_jobs=1)
-    monkeypatch.setattr("arena.walks.series.parallel_map_unordered", out_of_order)
-    with pytest.raises(InterruptedWalk) as stopped:
-        random_walk(100, NEAR)
-    assert same(stopped.value.walk, expected)
+    def interrupt(done: int, _: int) -> None:
+        if done == 50:
+            raise KeyboardInterrupt
+
+    with joblib.parallel_config(backend="threading"), pytest.raises(InterruptedWalk) as stopped:
+        random_walk(75, hill, 15, n_jobs=2, max_steps=4_000_000, progress=interrupt)
+    assert same(stopped.value.walk, random_walk(25, hill, 15, n_jobs=1, max_steps=4_000_000))
 
 
 @pytest.mark.parametrize(
@@ -158,13 +157,13 @@ def test_bad_arguments_are_refused(error: type[Exception], message: str, argumen
     assert str(refused.value) == message
 
 
-@pytest.mark.slow
+@pytest.mark.statistical
 def test_twenty_thousand_walks_are_42_300_steps_long_on_average() -> None:
     lengths = random_walk(20_000, seed=6).lengths
     assert abs(lengths.mean() - 42_300) <= 2 * lengths.std() / math.sqrt(len(lengths))
 
 
-@pytest.mark.slow
+@pytest.mark.timing
 @pytest.mark.skipif(not (shutil.which("gcc") or shutil.which("cc")), reason="needs a C compiler")
 def test_the_walks_keep_up_with_a_loop_in_c() -> None:
     command = [sys.executable, str(SCRIPTS / "bench_walk.py"), "--json", "--episodes", "500", "--part", "2"]

@@ -6,6 +6,8 @@ import numpy as np
 
 from agents.contract import Observation, Task
 
+_BASELINE = "Drivers that do not learn, to compare the others with."
+
 
 class DoesNotLearn:
     """Mixin of a named tuple that always drives as ``greedy`` says."""
@@ -41,6 +43,7 @@ class RandomAgent(DoesNotLearn, _Chance):
     """Any action, all equally likely, always: the random walk of section 3.2 of the paper."""
 
     __slots__ = ()
+    name, citation = "random", _BASELINE
 
     @classmethod
     def create(cls, task: Task, *, rng: np.random.Generator | None = None) -> Self:
@@ -75,6 +78,7 @@ class MomentumAgent(FixedAgent):
     """Thrust the way the car moves, right when it stands: energy grows with every step."""
 
     __slots__ = ()
+    name, citation = "momentum", _BASELINE
 
     def greedy(self, observation: Observation) -> int:
         """Right for a velocity of at least 0, else left."""
@@ -89,6 +93,7 @@ class XiaoAgent(FixedAgent):
     """
 
     __slots__ = ()
+    name, citation = "xiao", _BASELINE
 
     def greedy(self, observation: Observation) -> int:
         """Right if the velocity is between the curves."""

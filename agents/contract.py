@@ -22,6 +22,10 @@ from collections.abc import Sequence
 from typing import Any, Protocol, Self, runtime_checkable
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 Observation = Sequence[float]
 """Indexed by dimension: a tuple of floats in compiled code, an array (float64) from the environment."""

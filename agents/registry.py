@@ -26,7 +26,7 @@ from agents.algorithms.sarsa_lambda import SarsaLambda
 from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
 from agents.algorithms.true_online_sarsa import TrueOnlineSarsa
 from agents.algorithms.tutorial import TutorialQLearning
-from agents.algorithms.value_iteration import GridPlanner
+from agents.algorithms.value_iteration import ValueIteration
 from agents.algorithms.watkins_q_lambda import WatkinsQLambda
 from agents.baselines import MomentumAgent, RandomAgent, XiaoAgent
 from agents.contract import Agent
@@ -37,26 +37,29 @@ from envs.foundation.errors import InvalidTypeError, InvalidValueError
 GROUP = "arena.agents"
 
 BUILT_IN: dict[str, type[Any]] = {
-    "q-learning": QLearning,
-    "sarsa": Sarsa,
-    "expected-sarsa": ExpectedSarsa,
-    "double-q-learning": DoubleQLearning,
-    "n-step-sarsa": NStepSarsa,
-    "monte-carlo": MonteCarlo,
-    "dyna-q": DynaQ,
-    "prioritized-sweeping": PrioritizedSweeping,
-    "r-max": RMax,
-    "semi-gradient-sarsa": SemiGradientSarsa,
-    "sarsa-lambda": SarsaLambda,
-    "true-online-sarsa": TrueOnlineSarsa,
-    "watkins-q-lambda": WatkinsQLambda,
-    "fitted-q-iteration": FittedQIteration,
-    "tutorial": TutorialQLearning,
-    "xiao": XiaoAgent,
-    "random": RandomAgent,
-    "momentum": MomentumAgent,
-    "value-iteration": GridPlanner,
-    "optimal": Optimal,
+    agent.name: agent
+    for agent in (
+        QLearning,
+        Sarsa,
+        ExpectedSarsa,
+        DoubleQLearning,
+        NStepSarsa,
+        MonteCarlo,
+        DynaQ,
+        PrioritizedSweeping,
+        RMax,
+        SemiGradientSarsa,
+        SarsaLambda,
+        TrueOnlineSarsa,
+        WatkinsQLambda,
+        FittedQIteration,
+        TutorialQLearning,
+        XiaoAgent,
+        RandomAgent,
+        MomentumAgent,
+        ValueIteration,
+        Optimal,
+    )
 }
 
 _EITHER = inspect.Parameter.POSITIONAL_OR_KEYWORD
@@ -166,17 +169,17 @@ def check_methods(agent: Any) -> None:
     if not isinstance(agent, type):
         raise InvalidTypeError(f"agent must be a class, got {agent!r}")
     for method, arguments in _METHODS.items():
-        found = getattr(agent, method, None)
-        if not callable(found):
+        function = getattr(agent, method, None)
+        if not callable(function):
             raise InvalidTypeError(
                 f"agent must have the methods {', '.join(_METHODS)}; {agent.__name__} lacks {method}"
             )
         try:
-            inspect.signature(found).bind(None, *arguments)
+            inspect.signature(function).bind(None, *arguments)
         except TypeError:
             raise InvalidTypeError(
                 f"{agent.__name__}.{method} must take (self, {', '.join(arguments)}), "
-                f"got {inspect.signature(found)}"
+                f"got {inspect.signature(function)}"
             ) from None
         except ValueError:  # not written in Python
             continue
@@ -185,20 +188,20 @@ def check_methods(agent: Any) -> None:
 
 
 def _check_create(agent: type[Any]) -> None:
-    found = inspect.signature(agent.create)
-    kinds = [one.kind for one in found.parameters.values()]
+    signature = inspect.signature(agent.create)
+    kinds = [parameter.kind for parameter in signature.parameters.values()]
     positional = sum(kind in (inspect.Parameter.POSITIONAL_ONLY, _EITHER) for kind in kinds)
     if positional != 1 and inspect.Parameter.VAR_POSITIONAL not in kinds:
         raise InvalidTypeError(
             f"{agent.__name__}.create must be a class method that takes (cls, task, *, its parameters), "
-            f"got {found} without the class"
+            f"got {signature} without the class"
         )
 
 
 @cache
 def _installed() -> tuple[dict[str, Registered], dict[str, str], tuple[str, ...]]:
     """The agents of installed packages; a line for each that is broken; one for each whose name is taken."""
-    found: dict[str, Registered] = {}
+    usable: dict[str, Registered] = {}
     broken: dict[str, str] = {}
     clashes = []
     for entry in sorted(entry_points(group=GROUP), key=lambda entry: (entry.name, entry.value)):
@@ -212,12 +215,12 @@ def _installed() -> tuple[dict[str, Registered], dict[str, str], tuple[str, ...]
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             broken[entry.name] = f"agent {entry.name!r} of {origin} is broken: {reason}"
             continue
-        if entry.name in BUILT_IN or entry.name in found:
-            taken = found[entry.name].origin if entry.name in found else "built in"
+        if entry.name in BUILT_IN or entry.name in usable:
+            taken = usable[entry.name].origin if entry.name in usable else "built in"
             clashes.append(f"agent {entry.name!r} of {origin} has a name that is taken: {taken}")
             continue
-        found[entry.name] = Registered(entry.name, agent, origin)
-    return found, broken, tuple(clashes)
+        usable[entry.name] = Registered(entry.name, agent, origin)
+    return usable, broken, tuple(clashes)
 
 
 def _origin(entry: EntryPoint) -> str:

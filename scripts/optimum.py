@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.algorithms.value_iteration import GridPlanner
+from agents.algorithms.value_iteration import ValueIteration
 from agents.optimal import NEVER, Optimal, optimal_steps
 from arena.execution.loops import EvaluationLoop, evaluate
 from envs import Hill
@@ -99,7 +99,7 @@ def main() -> None:
     print(told("optimal", lengths(hill, Optimal.create(hill), positions), upper))
     for bins in (10, 20, 40):
         for polish in (0, 20):
-            planner = GridPlanner.create(hill, bins=bins, polish=polish, rng=np.random.default_rng(1))
+            planner = ValueIteration.create(hill, bins=bins, polish=polish, rng=np.random.default_rng(1))
             label = f"{bins}x{bins}, {'polished' if polish else 'value iteration'}"
             print(told(label, lengths(hill, planner, positions), upper))
 

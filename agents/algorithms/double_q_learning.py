@@ -1,23 +1,22 @@
-"""Double Q-learning: van Hasselt 2010; Sutton & Barto 2018, section 6.7."""
+"""Double Q-learning on cells."""
 
 from copy import deepcopy
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
-from agents.algorithms.tabular import Tabular
-from agents.contract import Observation, Task
-from agents.learning.action_values import Counts, Table, best_action
+from agents.algorithms.tabular import Tabular, TabularAgent
+from agents.contract import Floats, Integers, Observation
+from agents.learning.targets import double_value
 from agents.learning.updates import Update
-from agents.parameters.declared import validated
-from agents.parameters.inheritance import inherits
+from agents.parameters.validation import extends
 
 
 class Twin(NamedTuple):
     """One of the two tables, with the visits in which it learned, shape (cells, actions) each."""
 
-    values: Table
-    visits: Counts
+    values: Floats
+    visits: Integers
     update: Update
 
 
@@ -29,7 +28,7 @@ class Twins(NamedTuple):
     coin: np.random.Generator
 
 
-class DoubleQLearning(Tabular[Twins]):
+class DoubleQLearning(TabularAgent[Twins]):
     """Off-policy TD control without the bias of taking the greatest of uncertain values.
 
     Of two tables a coin chooses one to learn: it says which next action is the best, the other one
@@ -39,24 +38,21 @@ class DoubleQLearning(Tabular[Twins]):
     """
 
     __slots__ = ()
+    name = "double-q-learning"
+    citation = "Double Q-learning: van Hasselt 2010; Sutton & Barto 2018, section 6.7."
 
     @classmethod
-    @validated
-    @inherits(Tabular.create)
-    def create(cls, task: Task, *, rng: np.random.Generator | None = None, **inherited: Any) -> Self:
+    @extends(Tabular.create)
+    def create(cls, table: Tabular, *, rng: np.random.Generator | None = None) -> "DoubleQLearning":
         """The agent before it has learned anything; both tables begin with the same values.
 
         Args:
-            task: the hill.
+            table: see ``Tabular.create``.
             rng: draws the initial values, then tosses the coin.
-            inherited: see ``Tabular.create``.
         """
-        rng = rng or np.random.default_rng()
-        table: Tabular[None] = Tabular.create(task, rng=rng, **inherited)
-        first, second = (
-            Twin(table.values.copy(), table.visits.copy(), deepcopy(table.update)) for _ in range(2)
-        )
-        return cls(*table[:-1], Twins(first, second, rng))
+        parts = table.values, table.visits, table.update
+        first, second = Twin(*deepcopy(parts)), Twin(*deepcopy(parts))
+        return cls.with_memory(table, Twins(first, second, rng or np.random.default_rng()))
 
     def begin_episode(self) -> None:
         """Let the updates count episodes."""
@@ -76,7 +72,7 @@ class DoubleQLearning(Tabular[Twins]):
         cell, next_cell = self.cells.encode(observation), self.cells.encode(next_observation)
         first, second = self.memory.first, self.memory.second
         learner, judge = (first, second) if self.memory.coin.random() < 0.5 else (second, first)
-        next_value = judge.values[next_cell, best_action(learner.values, next_cell)]
+        next_value = double_value(learner.values, judge.values, next_cell)
         learner.update.apply(learner.values, learner.visits, cell, action, reward, next_value, terminated)
         self.values[cell, action] = 0.5 * (first.values[cell, action] + second.values[cell, action])
         self.visits[cell, action] += 1

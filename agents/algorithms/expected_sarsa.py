@@ -1,17 +1,13 @@
-"""Expected SARSA: van Seijen et al. 2009; Sutton & Barto 2018, section 6.6."""
-
-from typing import Any, Self
+"""Expected SARSA on cells."""
 
 import numpy as np
 
-from agents.algorithms.tabular import Tabular
-from agents.contract import Observation, Task
-from agents.learning.action_values import Table
-from agents.parameters.declared import validated
-from agents.parameters.inheritance import inherits
+from agents.algorithms.tabular import Tabular, TabularAgent
+from agents.contract import Floats, Observation
+from agents.parameters.validation import extends
 
 
-class ExpectedSarsa(Tabular[Table]):
+class ExpectedSarsa(TabularAgent[Floats]):
     """On-policy TD control that takes the mean over the next action, not the one that chance took.
 
     Attributes:
@@ -19,14 +15,14 @@ class ExpectedSarsa(Tabular[Table]):
     """
 
     __slots__ = ()
+    name = "expected-sarsa"
+    citation = "Expected SARSA: van Seijen et al. 2009; Sutton & Barto 2018, section 6.6."
 
     @classmethod
-    @validated
-    @inherits(Tabular.create)
-    def create(cls, task: Task, *, rng: np.random.Generator | None = None, **inherited: Any) -> Self:
+    @extends(Tabular.create)
+    def create(cls, table: Tabular) -> "ExpectedSarsa":
         """The agent before it has learned anything; parameters as those of ``Tabular.create``."""
-        table: Tabular[None] = Tabular.create(task, rng=rng, **inherited)
-        return cls(*table[:-1], np.zeros(1))
+        return cls.with_memory(table, np.zeros(1))
 
     def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
         """What the exploration chooses in the observation's cell."""

@@ -1,4 +1,4 @@
-"""Fitted Q iteration with randomized trees: Ernst, Geurts & Wehenkel 2005."""
+"""Fitted Q iteration with randomized trees."""
 
 from importlib.util import find_spec
 from typing import NamedTuple, Self
@@ -12,7 +12,8 @@ from agents.learning.action_values import best_action
 from agents.learning.schedules import LinearDecay
 from agents.models.batch import Batch
 from agents.models.forest import Forest
-from agents.parameters.declared import Count, Probability, validated
+from agents.parameters.declared import Count, Probability
+from agents.parameters.validation import validated
 
 
 class Fit(NamedTuple):
@@ -43,6 +44,9 @@ class FittedQIteration:
         cells: the fine grid.
         values: float64, shape (cells, actions): action values at the centres of the cells.
     """
+
+    name = "fitted-q-iteration"
+    citation = "Fitted Q iteration with randomized trees: Ernst, Geurts & Wehenkel 2005."
 
     def __init__(
         self,
@@ -105,7 +109,7 @@ class FittedQIteration:
         return cls(
             Grid.over(task, resolution),
             task.n_actions,
-            Batch.room_for(memory, len(task.low)),
+            Batch.with_capacity(memory, len(task.low)),
             Fit(discount, every, growths, iterations, trees, leaf),
             LinearDecay.of(epsilon),
             hold,
@@ -167,7 +171,7 @@ def fitted(batch: Batch, fit: Fit, rng: np.random.Generator) -> list[Forest]:
     """
     taken = [batch.actions == action for action in range(batch.actions.max() + 1)]
     forests: list[Forest] = []
-    targets, following = rng.random(len(batch.actions)), np.zeros(len(batch.actions))
+    targets, next_values = rng.random(len(batch.actions)), np.zeros(len(batch.actions))
     for growth in range(fit.growths):
         tries = batch.observations.shape[1] if growth > 0 else 1  # the first targets mean nothing
         forests = [
@@ -183,9 +187,9 @@ def fitted(batch: Batch, fit: Fit, rng: np.random.Generator) -> list[Forest]:
         ]
         leaves = [forest.leaves(batch.next_observations) for forest in forests]
         for _ in range(fit.iterations):
-            targets = batch.rewards + fit.discount * following * batch.goes_on
+            targets = batch.rewards + fit.discount * next_values * batch.goes_on
             for forest, rows in zip(forests, taken, strict=True):
                 forest.fill(targets[rows])
-            predictions = [forest.predict(at) for forest, at in zip(forests, leaves, strict=True)]
-            following = np.max(predictions, axis=0)
+            predictions = [forest.predict(rows) for forest, rows in zip(forests, leaves, strict=True)]
+            next_values = np.max(predictions, axis=0)
     return forests

@@ -1,30 +1,28 @@
 """Action values linear in binary features, driven epsilon-greedily (Sutton & Barto 2018, 9.5, 10.1)."""
 
-from typing import Generic, NamedTuple, Self, TypeVar, cast
+from typing import Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.contract import Observation, Task
+from agents.contract import Floats, Integers, Observation, Task
 from agents.discretization.cells import Binning, Bins
 from agents.discretization.features import Features, Tiles, make_features
-from agents.learning.action_values import Table
 from agents.learning.schedules import LinearDecay
-from agents.parameters.declared import Count, Positive, Probability, validated
+from agents.parameters.declared import Count, Positive, Probability
+from agents.parameters.validation import validated
 
-Active = NDArray[np.int64]
 Memory = TypeVar("Memory")
 
 
 class Scratch(NamedTuple):
     """Room for the active features of two observations, int64, shape (active,) each."""
 
-    here: Active
-    there: Active
+    here: Integers
+    there: Integers
 
 
-class Linear(NamedTuple, Generic[Memory]):
-    """What the linear agents share: everything but ``learn``.
+class LinearAgent(NamedTuple, Generic[Memory]):
+    """What the linear agents share: everything but ``create`` and ``learn``.
 
     The value of an action is the sum of the weights of the active features; ``weights`` has shape
     (features, actions).
@@ -35,12 +33,43 @@ class Linear(NamedTuple, Generic[Memory]):
     """
 
     features: Features
-    weights: Table
+    weights: Floats
     step_size: float
     discount: float
     epsilon: LinearDecay
     scratch: Scratch
     memory: Memory
+
+    @classmethod
+    def with_memory(cls, linear: "Linear", memory: Memory) -> Self:
+        """The agent with all that ``linear`` has, and its memory."""
+        return cls(
+            linear.features,
+            linear.weights,
+            linear.step_size,
+            linear.discount,
+            linear.epsilon,
+            linear.scratch,
+            memory,
+        )
+
+    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
+        """Epsilon-greedy, equal values broken at random."""
+        active = self.scratch.here
+        self.features.fill(observation, active)
+        return epsilon_greedy_of(self.weights, active, self.epsilon.at(progress), rng)
+
+    def greedy(self, observation: Observation) -> int:
+        """The action with the greatest value; of equal ones the lowest."""
+        active = self.scratch.here
+        self.features.fill(observation, active)
+        return best_action_of(self.weights, active)
+
+
+class Linear(LinearAgent[None]):
+    """The weights of an agent, with its parameters; one that keeps more ``extends`` its ``create``."""
+
+    __slots__ = ()
 
     @classmethod
     @validated
@@ -81,23 +110,11 @@ class Linear(NamedTuple, Generic[Memory]):
             discount,
             LinearDecay.of(epsilon),
             Scratch(np.zeros(features.active, np.int64), np.zeros(features.active, np.int64)),
-            cast("Memory", None),  # an agent with more to keep puts it here
+            None,
         )
 
-    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
-        """Epsilon-greedy, equal values broken at random."""
-        active = self.scratch.here
-        self.features.fill(observation, active)
-        return epsilon_greedy_of(self.weights, active, self.epsilon.at(progress), rng)
 
-    def greedy(self, observation: Observation) -> int:
-        """The action with the greatest value; of equal ones the lowest."""
-        active = self.scratch.here
-        self.features.fill(observation, active)
-        return best_action_of(self.weights, active)
-
-
-def value_of(weights: Table, active: Active, action: int) -> float:
+def value_of(weights: Floats, active: Integers, action: int) -> float:
     """The value of ``action`` where these features are active, Eq. (9.8)."""
     value = 0.0
     for i in range(active.shape[0]):
@@ -105,13 +122,13 @@ def value_of(weights: Table, active: Active, action: int) -> float:
     return value
 
 
-def add(weights: Table, active: Active, action: int, change: float) -> None:
+def add(weights: Floats, active: Integers, action: int, change: float) -> None:
     """Change the weights of the active features, whose gradient is 1; that of all others is 0."""
     for i in range(active.shape[0]):
         weights[active[i], action] += change
 
 
-def best_action_of(weights: Table, active: Active) -> int:
+def best_action_of(weights: Floats, active: Integers) -> int:
     """The action with the greatest value; of equal ones the lowest."""
     best, greatest = 0, value_of(weights, active, 0)
     for action in range(1, weights.shape[1]):
@@ -121,7 +138,7 @@ def best_action_of(weights: Table, active: Active) -> int:
     return best
 
 
-def epsilon_greedy_of(weights: Table, active: Active, epsilon: float, rng: np.random.Generator) -> int:
+def epsilon_greedy_of(weights: Floats, active: Integers, epsilon: float, rng: np.random.Generator) -> int:
     """With probability ``epsilon`` any action, else a best one, all equally likely."""
     if rng.random() < epsilon:
         return int(rng.random() * weights.shape[1])

@@ -1,17 +1,13 @@
-"""On-policy every-visit Monte Carlo control: Sutton & Barto 2018, section 5.4; Singh & Sutton 1996."""
+"""Monte Carlo control on cells."""
 
-from typing import Any, Self
-
-import numpy as np
-
-from agents.algorithms.tabular import Tabular
-from agents.contract import Observation, Task
-from agents.learning.step_buffer import Steps
-from agents.parameters.declared import Count, validated
-from agents.parameters.inheritance import inherits
+from agents.algorithms.tabular import Tabular, TabularAgent
+from agents.contract import Observation
+from agents.learning.step_buffer import StepBuffer
+from agents.parameters.declared import Count
+from agents.parameters.validation import extends
 
 
-class MonteCarlo(Tabular[Steps]):
+class MonteCarlo(TabularAgent[StepBuffer]):
     """Learns from what whole episodes return: every visit counts, and no value leans on another.
 
     An episode is learned at the goal, the newest step first. One that a time limit ends has no return;
@@ -22,27 +18,25 @@ class MonteCarlo(Tabular[Steps]):
     """
 
     __slots__ = ()
+    name = "monte-carlo"
+    citation = (
+        "On-policy every-visit Monte Carlo control: Sutton & Barto 2018, section 5.4; Singh & Sutton 1996."
+    )
 
     @classmethod
-    @validated
-    @inherits(Tabular.create)
-    def create(
-        cls, task: Task, *, memory: Count = 30_000, rng: np.random.Generator | None = None, **inherited: Any
-    ) -> Self:
+    @extends(Tabular.create)
+    def create(cls, table: Tabular, *, memory: Count = 30_000) -> "MonteCarlo":
         """The agent before it has learned anything.
 
         Args:
-            task: the hill.
-            memory: steps of an episode that are remembered; of a longer one the earliest are forgotten.
-            rng: draws the initial values.
-            inherited: see ``Tabular.create``. ``step_size=HarmonicRate(1, 1, 1)`` is the book's mean of all
+            table: see ``Tabular.create``. ``step_size=HarmonicRate(1, 1, 1)`` is the book's mean of all
                 returns; it learns less well, for the returns of early, bad drives weigh as much as any.
+            memory: steps of an episode that are remembered; of a longer one the earliest are forgotten.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        table: Tabular[None] = Tabular.create(task, rng=rng, **inherited)
-        return cls(*table[:-1], Steps.room_for(memory))
+        return cls.with_memory(table, StepBuffer.with_capacity(memory))
 
     def begin_episode(self) -> None:
         """Learn from an episode that a time limit ended."""
@@ -59,8 +53,7 @@ class MonteCarlo(Tabular[Steps]):
         terminated: bool,
     ) -> None:
         """Remember this step; at the goal, learn from the episode."""
-        cell, next_cell = self.cells.encode(observation), self.cells.encode(next_observation)
-        self.memory.append(cell, action, reward, next_cell, next_action)
+        self.memory.append(self.cells, observation, action, reward, next_observation, next_action)
         if terminated:
             self.learn_episode(True)
 
@@ -71,12 +64,11 @@ class MonteCarlo(Tabular[Steps]):
             terminated: whether the newest reached the goal.
         """
         steps, goal = self.memory, terminated
-        place = steps.now[0]
-        following = self.values[steps.cells[place], steps.actions[place]]
-        for age in range(1, steps.now[1] + 1):
+        following = self.values[steps.states[steps.cursor[0], 0], steps.actions[steps.cursor[0]]]
+        for age in range(1, steps.pending[0] + 1):
             place = steps.back(age)
-            cell, action, reward = steps.cells[place], steps.actions[place], steps.rewards[place]
+            cell, action, reward = steps.states[place, 0], steps.actions[place], steps.rewards[place]
             self.update.apply(self.values, self.visits, cell, action, reward, following, goal)
             following = self.update.target(reward, following, goal)
             goal = False
-        steps.now[1] = 0
+        steps.pending[0] = 0

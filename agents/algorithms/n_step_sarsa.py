@@ -1,17 +1,13 @@
-"""n-step SARSA: Watkins 1989, Cichosz 1995; Sutton & Barto 2018, section 7.2."""
+"""n-step SARSA on cells."""
 
-from typing import Any, Self
-
-import numpy as np
-
-from agents.algorithms.tabular import Tabular
-from agents.contract import Observation, Task
-from agents.learning.step_buffer import Steps
-from agents.parameters.declared import Count, validated
-from agents.parameters.inheritance import inherits
+from agents.algorithms.tabular import Tabular, TabularAgent
+from agents.contract import Observation
+from agents.learning.step_buffer import StepBuffer
+from agents.parameters.declared import Count
+from agents.parameters.validation import extends
 
 
-class NStepSarsa(Tabular[Steps]):
+class NStepSarsa(TabularAgent[StepBuffer]):
     """On-policy control that learns from the n next rewards and the value of what follows them.
 
     The step n - 1 before the current one is learned; at the goal all that wait, the oldest first.
@@ -21,30 +17,26 @@ class NStepSarsa(Tabular[Steps]):
     """
 
     __slots__ = ()
+    name = "n-step-sarsa"
+    citation = "n-step SARSA: Watkins 1989, Cichosz 1995; Sutton & Barto 2018, section 7.2."
 
     @classmethod
-    @validated
-    @inherits(Tabular.create)
-    def create(
-        cls, task: Task, *, n: Count = 4, rng: np.random.Generator | None = None, **inherited: Any
-    ) -> Self:
+    @extends(Tabular.create)
+    def create(cls, table: Tabular, *, n: Count = 4) -> "NStepSarsa":
         """The agent before it has learned anything.
 
         Args:
-            task: the hill.
+            table: see ``Tabular.create``.
             n: steps until an estimated value takes the place of rewards; 1 is SARSA.
-            rng: draws the initial values.
-            inherited: see ``Tabular.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        table: Tabular[None] = Tabular.create(task, rng=rng, **inherited)
-        return cls(*table[:-1], Steps.room_for(n))
+        return cls.with_memory(table, StepBuffer.with_capacity(n))
 
     def begin_episode(self) -> None:
         """Learn what a time limit left over."""
-        while self.memory.now[1] > 0:
+        while self.memory.pending[0] > 0:
             self.learn_oldest(False)
         self.update.begin_episode()
 
@@ -58,12 +50,12 @@ class NStepSarsa(Tabular[Steps]):
         terminated: bool,
     ) -> None:
         """Remember this step, learn the one n - 1 before it."""
-        steps, next_cell = self.memory, self.cells.encode(next_observation)
-        steps.append(self.cells.encode(observation), action, reward, next_cell, next_action)
+        steps = self.memory
+        steps.append(self.cells, observation, action, reward, next_observation, next_action)
         if terminated:
-            while steps.now[1] > 0:
+            while steps.pending[0] > 0:
                 self.learn_oldest(True)
-        elif steps.now[1] == steps.cells.shape[0] - 1:
+        elif steps.is_full():
             self.learn_oldest(False)
 
     def learn_oldest(self, terminated: bool) -> None:
@@ -72,13 +64,12 @@ class NStepSarsa(Tabular[Steps]):
         Args:
             terminated: whether the newest step reached the goal.
         """
-        steps = self.memory
-        waiting, place = steps.now[1], steps.now[0]
-        following, goal = self.values[steps.cells[place], steps.actions[place]], terminated
-        for age in range(1, waiting):
+        steps, goal = self.memory, terminated
+        following = self.values[steps.states[steps.cursor[0], 0], steps.actions[steps.cursor[0]]]
+        for age in range(1, steps.pending[0]):
             following = self.update.target(steps.rewards[steps.back(age)], following, goal)
             goal = False
-        place = steps.back(waiting)
-        cell, action, reward = steps.cells[place], steps.actions[place], steps.rewards[place]
+        place = steps.back(steps.pending[0])
+        cell, action, reward = steps.states[place, 0], steps.actions[place], steps.rewards[place]
         self.update.apply(self.values, self.visits, cell, action, reward, following, goal)
-        steps.now[1] -= 1
+        steps.pending[0] -= 1

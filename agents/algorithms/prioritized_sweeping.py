@@ -1,17 +1,16 @@
-"""Prioritized sweeping: Moore & Atkeson 1993; Sutton & Barto 2018, section 8.4."""
+"""Prioritized sweeping on cells."""
 
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from annotated_types import Ge
-from numpy.typing import NDArray
 
-from agents.algorithms.tabular import OF_THE_UPDATE, Tabular
-from agents.contract import Observation, Task
+from agents.algorithms.tabular import OF_THE_UPDATE, Tabular, TabularAgent
+from agents.contract import Floats, Observation
 from agents.models.cell_model import SUCCESSORS, CellModel
 from agents.models.priority_queue import PriorityQueue
-from agents.parameters.declared import NonNegative, validated
-from agents.parameters.inheritance import inherits
+from agents.parameters.declared import NonNegative
+from agents.parameters.validation import extends
 
 
 class Plan(NamedTuple):
@@ -20,19 +19,19 @@ class Plan(NamedTuple):
     Attributes:
         model: what was seen.
         queue: the cells to sweep, by how much that may change them.
-        worth: float64, shape (cells + 1,): the best value of each cell; that of the goal is 0.
+        state_values: float64, shape (cells + 1,): the best value of each cell; that of the goal is 0.
         planning: cells that are swept after each step, beside the one it began in.
         threshold: the least priority that is worth a sweep.
     """
 
     model: CellModel
     queue: PriorityQueue
-    worth: NDArray[np.float64]
+    state_values: Floats
     planning: int
     threshold: float
 
 
-class PrioritizedSweeping(Tabular[Plan]):
+class PrioritizedSweeping(TabularAgent[Plan]):
     """Counts what leads where, computes values from that, and first where they change most.
 
     A sweep of a cell sets the values of the actions tried in it to what the counts let expect. When
@@ -41,36 +40,28 @@ class PrioritizedSweeping(Tabular[Plan]):
     """
 
     __slots__ = ()
+    name = "prioritized-sweeping"
+    citation = "Prioritized sweeping: Moore & Atkeson 1993; Sutton & Barto 2018, section 8.4."
 
     @classmethod
-    @validated
-    @inherits(Tabular.create, omit=OF_THE_UPDATE)
+    @extends(Tabular.create, omit=OF_THE_UPDATE)
     def create(
-        cls,
-        task: Task,
-        *,
-        planning: Annotated[int, Ge(0)] = 10,
-        threshold: NonNegative = 0.01,
-        rng: np.random.Generator | None = None,
-        **inherited: Any,
-    ) -> Self:
+        cls, table: Tabular, *, planning: Annotated[int, Ge(0)] = 10, threshold: NonNegative = 0.01
+    ) -> "PrioritizedSweeping":
         """The agent before it has learned anything.
 
         Args:
-            task: the hill.
+            table: see ``Tabular.create``.
             planning: sweeps after each step, beside that of the cell it began in.
             threshold: the least change, times its probability, that is worth a sweep.
-            rng: draws the initial values.
-            inherited: see ``Tabular.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        table: Tabular[None] = Tabular.create(task, rng=rng, **inherited)
         cells, actions = table.values.shape
-        model, queue = CellModel.of_size(cells, actions), PriorityQueue.of_size(cells)
-        worth = np.append(table.values.max(axis=1), 0.0)
-        return cls(*table[:-1], Plan(model, queue, worth, planning, threshold))
+        model, queue = CellModel.empty(cells, actions), PriorityQueue.empty(cells)
+        state_values = np.append(table.values.max(axis=1), 0.0)
+        return cls.with_memory(table, Plan(model, queue, state_values, planning, threshold))
 
     def learn(
         self,
@@ -96,11 +87,11 @@ class PrioritizedSweeping(Tabular[Plan]):
         """Compute the values of ``cell`` from the model; queue the cells that lead to it."""
         plan, actions = self.memory, self.values.shape[1]
         discount = self.update.discount
-        change = plan.model.back_up(self.values, self.visits, plan.worth, cell, 1, discount)
+        change = plan.model.backup(self.values, self.visits, plan.state_values, cell, 1, discount)
         link = plan.model.first[cell] if change > plan.threshold else -1
         while link >= 0:
             pair, place = link // SUCCESSORS, link % SUCCESSORS
             priority = change * plan.model.counts[pair, place] / plan.model.tries[pair]
             if priority > max(plan.threshold, plan.queue.priorities[pair // actions]):
                 plan.queue.put(pair // actions, priority)
-            link = plan.model.following[link]
+            link = plan.model.next_link[link]

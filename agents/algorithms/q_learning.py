@@ -1,14 +1,16 @@
-"""Q-learning: Eq. (16) of the paper; Watkins 1989; Sutton & Barto 2018, section 6.5."""
+"""Q-learning on cells."""
 
 from agents.algorithms.tabular import Tabular
 from agents.contract import Observation
-from agents.learning.action_values import best_action
+from agents.learning.targets import greatest_value
 
 
-class QLearning(Tabular[None]):
+class QLearning(Tabular):
     """Off-policy TD control on a grid: learns the value of acting greedily next."""
 
     __slots__ = ()
+    name = "q-learning"
+    citation = "Q-learning: Eq. (16) of the paper; Watkins 1989; Sutton & Barto 2018, section 6.5."
 
     def learn(
         self,
@@ -21,5 +23,5 @@ class QLearning(Tabular[None]):
     ) -> None:
         """Towards the reward and the best value of the next cell."""
         cell, next_cell = self.cells.encode(observation), self.cells.encode(next_observation)
-        next_value = self.values[next_cell, best_action(self.values, next_cell)]
+        next_value = greatest_value(self.values, next_cell)
         self.update.apply(self.values, self.visits, cell, action, reward, next_value, terminated)

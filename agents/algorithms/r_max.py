@@ -1,16 +1,14 @@
-"""R-MAX: Brafman & Tennenholtz 2002."""
+"""R-MAX on cells."""
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.algorithms.tabular import OF_THE_UPDATE, Tabular
-from agents.contract import Observation, Task
-from agents.learning.action_values import Counts
+from agents.algorithms.tabular import OF_THE_UPDATE, Tabular, TabularAgent
+from agents.contract import Floats, Integers, Observation
 from agents.models.cell_model import CellModel
-from agents.parameters.declared import Count, NonNegative, validated
-from agents.parameters.inheritance import inherits
+from agents.parameters.declared import Count, NonNegative
+from agents.parameters.validation import extends
 
 
 class Knowledge(NamedTuple):
@@ -18,24 +16,24 @@ class Knowledge(NamedTuple):
 
     Attributes:
         model: what was seen.
-        worth: float64, shape (cells + 1,): the best value of each cell; that of the goal is 0.
+        state_values: float64, shape (cells + 1,): the best value of each cell; that of the goal is 0.
         known: visits that make an action in a cell known.
         sweeps: of value iteration at most, each time something is learned.
-        tolerance: change of all worths that ends value iteration.
+        tolerance: change of all state values that ends value iteration.
         cells: int64, shape (cells,): those in which something is known, in the order of finding out.
-        found: int64, shape (1,): how many these are.
+        n_cells: int64, shape (1,): how many these are.
     """
 
     model: CellModel
-    worth: NDArray[np.float64]
+    state_values: Floats
     known: int
     sweeps: int
     tolerance: float
-    cells: Counts
-    found: Counts
+    cells: Integers
+    n_cells: Integers
 
 
-class RMax(Tabular[Knowledge]):
+class RMax(TabularAgent[Knowledge]):
     """Takes what it does not know for the best there is, so that to act greedily is to explore.
 
     An action is known in a cell after ``known`` visits; then the values of all that is known are
@@ -46,47 +44,45 @@ class RMax(Tabular[Knowledge]):
     """
 
     __slots__ = ()
+    name = "r-max"
+    citation = "R-MAX: Brafman & Tennenholtz 2002."
 
     @classmethod
-    @validated
-    @inherits(Tabular.create, omit=(*OF_THE_UPDATE, "epsilon", "explore", "initial_values"))
+    @extends(Tabular.create, omit=(*OF_THE_UPDATE, "epsilon", "explore", "initial_values"), epsilon=0.0)
     def create(
         cls,
-        task: Task,
+        table: Tabular,
         *,
         known: Count = 5,
         greatest_return: float = 0.0,
         sweeps: Count = 100,
         tolerance: NonNegative = 0.01,
-        rng: np.random.Generator | None = None,
-        **inherited: Any,
-    ) -> Self:
+    ) -> "RMax":
         """The agent before it has learned anything.
 
         Args:
-            task: the hill.
+            table: see ``Tabular.create``.
             known: visits that make an action in a cell known.
             greatest_return: value of what is not known; no return can be greater. The hill's rewards
                 of -1 leave 0.
             sweeps: of value iteration at most, each time something is learned.
-            tolerance: value iteration ends when no worth changes by more.
-            rng: for cells that are drawn.
-            inherited: see ``Tabular.create``.
+            tolerance: value iteration ends when no state value changes by more.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        table: Tabular[None] = Tabular.create(
-            task, epsilon=0.0, initial_values=greatest_return, rng=rng, **inherited
-        )
         cells, actions = table.values.shape
-        worth = np.append(table.values.max(axis=1), 0.0)
-        model, room, found = (
-            CellModel.of_size(cells, actions),
-            np.zeros(cells, np.int64),
-            np.zeros(1, np.int64),
+        table.values.fill(greatest_return)
+        knowledge = Knowledge(
+            model=CellModel.empty(cells, actions),
+            state_values=np.append(np.full(cells, greatest_return), 0.0),
+            known=known,
+            sweeps=sweeps,
+            tolerance=tolerance,
+            cells=np.zeros(cells, np.int64),
+            n_cells=np.zeros(1, np.int64),
         )
-        return cls(*table[:-1], Knowledge(model, worth, known, sweeps, tolerance, room, found))
+        return cls.with_memory(table, knowledge)
 
     def learn(
         self,
@@ -112,26 +108,22 @@ class RMax(Tabular[Knowledge]):
     def note(self, cell: int) -> None:
         """Put a cell of which something is known on the list, if it is not there."""
         memory = self.memory
-        for place in range(memory.found[0]):
+        for place in range(memory.n_cells[0]):
             if memory.cells[place] == cell:
                 return
-        memory.cells[memory.found[0]] = cell
-        memory.found[0] += 1
+        memory.cells[memory.n_cells[0]] = cell
+        memory.n_cells[0] += 1
 
     def sweep(self) -> float:
-        """A sweep of value iteration in place (Gauss-Seidel); the greatest change of a worth.
+        """Sweep once, in place (Gauss-Seidel), and return the greatest change of a state value.
 
-        The newest cells come first: the way there led through the older ones, whose worth follows.
+        The newest cells come first: the way there led through the older ones, whose values follow.
         """
         memory, greatest = self.memory, 0.0
-        for place in range(memory.found[0] - 1, -1, -1):
-            change = memory.model.back_up(
-                self.values,
-                self.visits,
-                memory.worth,
-                memory.cells[place],
-                memory.known,
-                self.update.discount,
+        for place in range(memory.n_cells[0] - 1, -1, -1):
+            cell, discount = memory.cells[place], self.update.discount
+            change = memory.model.backup(
+                self.values, self.visits, memory.state_values, cell, memory.known, discount
             )
             greatest = max(greatest, change)
         return greatest

@@ -1,13 +1,15 @@
-"""SARSA: Eq. (17) of the paper; Rummery & Niranjan 1994; Sutton & Barto 2018, section 6.4."""
+"""SARSA on cells."""
 
 from agents.algorithms.tabular import Tabular
 from agents.contract import Observation
 
 
-class Sarsa(Tabular[None]):
+class Sarsa(Tabular):
     """On-policy TD control on a grid: learns the value of what it does next, exploration included."""
 
     __slots__ = ()
+    name = "sarsa"
+    citation = "SARSA: Eq. (17) of the paper; Rummery & Niranjan 1994; Sutton & Barto 2018, section 6.4."
 
     def learn(
         self,

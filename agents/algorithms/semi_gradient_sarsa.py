@@ -1,33 +1,14 @@
-"""Semi-gradient n-step Sarsa: Sutton & Barto 2018, 10.1 (n = 1) and 10.2."""
+"""n-step Sarsa with binary features."""
 
-from typing import Any, NamedTuple, Self
-
-import numpy as np
-from numpy.typing import NDArray
-
-from agents.algorithms.linear import Linear, add, value_of
-from agents.contract import Observation, Task
-from agents.parameters.declared import Count, validated
-from agents.parameters.inheritance import inherits
+from agents.algorithms.linear import Linear, LinearAgent, add, value_of
+from agents.contract import Observation
+from agents.learning.step_buffer import StepBuffer
+from agents.learning.targets import bootstrapped
+from agents.parameters.declared import Count
+from agents.parameters.validation import extends
 
 
-class Steps(NamedTuple):
-    """The last n steps, in a ring of n + 1 places; the last place is that of the next observation.
-
-    Attributes:
-        active: int64, shape (n + 1, active features): where each step began.
-        actions: int64, shape (n + 1,).
-        rewards: float64, shape (n + 1,): what each step brought.
-        now: int64, shape (2,): the place of the step to come, and how many steps are not learned yet.
-    """
-
-    active: NDArray[np.int64]
-    actions: NDArray[np.int64]
-    rewards: NDArray[np.float64]
-    now: NDArray[np.int64]
-
-
-class SemiGradientSarsa(Linear[Steps]):
+class SemiGradientSarsa(LinearAgent[StepBuffer]):
     """On-policy control that learns from the n next rewards and the value of what follows them.
 
     The step n - 1 before the current one is learned; at the goal all that wait. Those that wait when a
@@ -37,44 +18,29 @@ class SemiGradientSarsa(Linear[Steps]):
     """
 
     __slots__ = ()
+    name = "semi-gradient-sarsa"
+    citation = "Semi-gradient n-step Sarsa: Sutton & Barto 2018, 10.1 (n = 1) and 10.2."
 
     @classmethod
-    @validated
-    @inherits(Linear.create)
-    def create(
-        cls,
-        task: Task,
-        *,
-        n: Count = 1,
-        rng: np.random.Generator | None = None,
-        **inherited: Any,
-    ) -> Self:
+    @extends(Linear.create)
+    def create(cls, linear: Linear, *, n: Count = 1) -> "SemiGradientSarsa":
         """The agent before it has learned anything.
 
         Args:
-            task: the hill.
+            linear: see ``Linear.create``.
             n: steps until an estimated value takes the place of rewards.
-            rng: for cells that are learned.
-            inherited: see ``Linear.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        table: Linear[None] = Linear.create(task, rng=rng, **inherited)
-        steps = Steps(
-            np.zeros((n + 1, table.features.active), np.int64),
-            np.zeros(n + 1, np.int64),
-            np.zeros(n + 1),
-            np.zeros(2, np.int64),
-        )
-        return cls(*table[:-1], steps)
+        return cls.with_memory(linear, StepBuffer.with_capacity(n, linear.features.active))
 
     def begin_episode(self) -> None:
         """Learn what a time limit left over."""
         steps = self.memory
-        last = steps.now[0]
-        while steps.now[1] > 0:
-            self.learn_oldest(value_of(self.weights, steps.active[last], steps.actions[last]))
+        last = steps.cursor[0]
+        while steps.pending[0] > 0:
+            self.learn_oldest(value_of(self.weights, steps.states[last], steps.actions[last]))
 
     def learn(
         self,
@@ -87,19 +53,12 @@ class SemiGradientSarsa(Linear[Steps]):
     ) -> None:
         """Remember this step, learn the one n - 1 before it."""
         steps = self.memory
-        here = steps.now[0]
-        there = here + 1 if here + 1 < steps.rewards.shape[0] else 0
-        self.features.fill(observation, steps.active[here])
-        self.features.fill(next_observation, steps.active[there])
-        steps.actions[here], steps.actions[there] = action, next_action
-        steps.rewards[here] = reward
-        steps.now[0] = there
-        steps.now[1] += 1
+        steps.append(self.features, observation, action, reward, next_observation, next_action)
         if terminated:
-            while steps.now[1] > 0:
+            while steps.pending[0] > 0:
                 self.learn_oldest(0.0)
-        elif steps.now[1] == steps.rewards.shape[0] - 1:
-            self.learn_oldest(value_of(self.weights, steps.active[there], next_action))
+        elif steps.is_full():
+            self.learn_oldest(value_of(self.weights, steps.states[steps.cursor[0]], next_action))
 
     def learn_oldest(self, following: float) -> None:
         """Learn the oldest step that waits.
@@ -107,12 +66,11 @@ class SemiGradientSarsa(Linear[Steps]):
         Args:
             following: value of what follows the newest step.
         """
-        steps = self.memory
-        place, target = steps.now[0], following
-        for _ in range(steps.now[1]):
-            place = place - 1 if place > 0 else steps.rewards.shape[0] - 1
-            target = steps.rewards[place] + self.discount * target
-        active, action = steps.active[place], steps.actions[place]
+        steps, target = self.memory, following
+        for age in range(1, steps.pending[0] + 1):
+            target = bootstrapped(steps.rewards[steps.back(age)], self.discount, target)
+        place = steps.back(steps.pending[0])
+        active, action = steps.states[place], steps.actions[place]
         change = self.step_size * (target - value_of(self.weights, active, action))
         add(self.weights, active, action, change)
-        steps.now[1] -= 1
+        steps.pending[0] -= 1

@@ -1,16 +1,17 @@
-"""A table of action values over the cells of a grid, and how the agent explores."""
+"""A table of action values over cells, and how the agent explores."""
 
-from typing import Generic, Literal, NamedTuple, Self, TypeVar, cast
+from typing import Generic, Literal, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from agents.contract import Observation, Task
+from agents.contract import Floats, Integers, Observation, Task
 from agents.discretization.cells import Binning, Bins, Cells, make_cells
-from agents.learning.action_values import Counts, Table, best_action
+from agents.learning.action_values import best_action
 from agents.learning.exploration import Exploration, Softmax, UpperConfidence, make_exploration
 from agents.learning.schedules import HarmonicRate, LinearDecay
 from agents.learning.updates import Update, make_update
-from agents.parameters.declared import Probability, StepSize, validated
+from agents.parameters.declared import Probability, StepSize
+from agents.parameters.validation import validated
 from envs.foundation.checks import number
 
 Memory = TypeVar("Memory")
@@ -19,8 +20,8 @@ OF_THE_UPDATE = ("step_size", "count_visits", "goal")
 """Parameters without a use for agents that compute their values from a model."""
 
 
-class Tabular(NamedTuple, Generic[Memory]):
-    """What Q-learning, SARSA and their kin share (paper, section 4): everything but ``learn``.
+class TabularAgent(NamedTuple, Generic[Memory]):
+    """What Q-learning, SARSA and their kin share (paper, section 4): everything but ``create`` and ``learn``.
 
     ``values`` and ``visits`` have shape (cells, actions); ``visits`` counts every time that an
     action was taken in a cell. Among equal values the lowest action is the greedy one.
@@ -30,11 +31,34 @@ class Tabular(NamedTuple, Generic[Memory]):
     """
 
     cells: Cells
-    values: Table
-    visits: Counts
+    values: Floats
+    visits: Integers
     update: Update
     policy: Exploration
     memory: Memory
+
+    @classmethod
+    def with_memory(cls, table: "Tabular", memory: Memory) -> Self:
+        """The agent with all that ``table`` has, and its memory."""
+        return cls(table.cells, table.values, table.visits, table.update, table.policy, memory)
+
+    def begin_episode(self) -> None:
+        """Let the update count episodes."""
+        self.update.begin_episode()
+
+    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
+        """What the exploration chooses in the observation's cell."""
+        return self.policy.choose(self.values, self.visits, self.cells.encode(observation), progress, rng)
+
+    def greedy(self, observation: Observation) -> int:
+        """The best action of the observation's cell, Eq. (14)."""
+        return best_action(self.values, self.cells.encode(observation))
+
+
+class Tabular(TabularAgent[None]):
+    """The table of an agent, with its parameters; one that keeps more ``extends`` its ``create``."""
+
+    __slots__ = ()
 
     @classmethod
     @validated
@@ -82,25 +106,13 @@ class Tabular(NamedTuple, Generic[Memory]):
             np.zeros(shape, np.int64),
             make_update(shape, rate, discount, count_visits, goal),
             make_exploration(epsilon, explore),
-            cast("Memory", None),  # an agent with more to keep puts it here
+            None,
         )
-
-    def begin_episode(self) -> None:
-        """Let the update count episodes."""
-        self.update.begin_episode()
-
-    def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
-        """What the exploration chooses in the observation's cell."""
-        return self.policy.choose(self.values, self.visits, self.cells.encode(observation), progress, rng)
-
-    def greedy(self, observation: Observation) -> int:
-        """The best action of the observation's cell, Eq. (14)."""
-        return best_action(self.values, self.cells.encode(observation))
 
 
 def _initial(
     shape: tuple[int, int], values: float | tuple[float, float], rng: np.random.Generator | None
-) -> Table:
+) -> Floats:
     if isinstance(values, float):
         return np.full(shape, values)
     low, high = values

@@ -1,54 +1,45 @@
-"""True online Sarsa(lambda): van Seijen & Sutton 2014; Sutton & Barto 2018, 12.7."""
+"""True online Sarsa(lambda) with binary features."""
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.algorithms.linear import Linear, add, value_of
-from agents.contract import Observation, Task
-from agents.learning.traces import Kind, Traces
-from agents.parameters.declared import Probability, validated
-from agents.parameters.inheritance import inherits
+from agents.algorithms.linear import Linear, LinearAgent, add, value_of
+from agents.contract import Floats, Observation
+from agents.learning.targets import bootstrapped
+from agents.learning.traces import TraceKind, Traces
+from agents.parameters.declared import Probability
+from agents.parameters.validation import extends
 
 
 class Memory(NamedTuple):
     """Dutch traces, and the value that the last step gave to where it led, float64, shape (1,)."""
 
     traces: Traces
-    old: NDArray[np.float64]
+    old: Floats
 
 
-class TrueOnlineSarsa(Linear[Memory]):
+class TrueOnlineSarsa(LinearAgent[Memory]):
     """On-policy control whose values are, after each step, those of the online lambda-return algorithm."""
 
     __slots__ = ()
+    name = "true-online-sarsa"
+    citation = "True online Sarsa(lambda): van Seijen & Sutton 2014; Sutton & Barto 2018, 12.7."
 
     @classmethod
-    @validated
-    @inherits(Linear.create)
-    def create(
-        cls,
-        task: Task,
-        *,
-        trace_decay: Probability = 0.9,
-        rng: np.random.Generator | None = None,
-        **inherited: Any,
-    ) -> Self:
+    @extends(Linear.create)
+    def create(cls, linear: Linear, *, trace_decay: Probability = 0.9) -> "TrueOnlineSarsa":
         """The agent before it has learned anything.
 
         Args:
-            task: the hill.
+            linear: see ``Linear.create``.
             trace_decay: lambda, in [0, 1].
-            rng: for cells that are learned.
-            inherited: see ``Linear.create``.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        table: Linear[None] = Linear.create(task, rng=rng, **inherited)
-        traces = Traces.of(table.weights, Kind.DUTCH, table.discount * trace_decay)
-        return cls(*table[:-1], Memory(traces, np.zeros(1)))
+        traces = Traces.of(linear.weights, TraceKind.DUTCH, linear.discount * trace_decay)
+        return cls.with_memory(linear, Memory(traces, np.zeros(1)))
 
     def begin_episode(self) -> None:
         """Forget the episode before."""
@@ -71,7 +62,7 @@ class TrueOnlineSarsa(Linear[Memory]):
         if not terminated:
             self.features.fill(next_observation, there)
             next_value = value_of(self.weights, there, next_action)
-        error = reward + self.discount * next_value - value
+        error = bootstrapped(reward, self.discount, next_value) - value
         traces.visit(here, action, self.step_size)
         traces.learn(self.weights, self.step_size * (error + value - old[0]))
         add(self.weights, here, action, -self.step_size * (value - old[0]))

@@ -1,14 +1,8 @@
-"""The Q-learning of the tutorial that the paper starts from, digitized."""
-
-from typing import Any, Self
-
-import numpy as np
+"""The tutorial's Q-learning."""
 
 from agents.algorithms.q_learning import QLearning
-from agents.contract import Task
 from agents.learning.schedules import LinearDecay
-from agents.parameters.declared import validated
-from agents.parameters.inheritance import inherits
+from agents.parameters.validation import extends
 
 
 class TutorialQLearning(QLearning):
@@ -21,10 +15,11 @@ class TutorialQLearning(QLearning):
     """
 
     __slots__ = ()
+    name = "tutorial"
+    citation = "The Q-learning of the tutorial that the paper starts from, digitized."
 
     @classmethod
-    @validated
-    @inherits(
+    @extends(
         QLearning.create,
         bins=20,
         discount=0.95,
@@ -33,15 +28,13 @@ class TutorialQLearning(QLearning):
         initial_values=(-2.0, 0.0),
         goal="zero",
     )
-    def create(cls, task: Task, *, rng: np.random.Generator | None = None, **inherited: Any) -> Self:
+    def create(cls, agent: QLearning) -> "TutorialQLearning":
         """The agent before it has learned anything.
 
         Args:
-            task: the hill.
-            rng: draws the initial values.
-            inherited: see ``Tabular.create``; the defaults are the tutorial's.
+            agent: see ``Tabular.create``; the defaults are the tutorial's.
 
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        return super().create(task, rng=rng, **inherited)
+        return cls(*agent)

@@ -1,4 +1,4 @@
-"""Planning on the digitized hill: what a grid can do without any learning.
+"""Value iteration on the digitized hill: what a grid can do without any learning.
 
 Value iteration: R. Bellman 1957; Sutton & Barto 2018, section 4.4. Why its policy need not be the best one on
 the grid: M. Littman, Memoryless policies: theoretical limitations and practical results, 1994.
@@ -8,18 +8,18 @@ from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from annotated_types import Ge
-from numpy.typing import NDArray
 
 from agents.baselines import DoesNotLearn
-from agents.contract import Observation
+from agents.contract import Floats, Integers, Observation
 from agents.discretization.cells import Binning, Bins, Cells, make_cells
-from agents.learning.action_values import Counts, Table, best_action
+from agents.learning.action_values import best_action
 from agents.models.cell_model import CellModel
-from agents.parameters.declared import Count, Probability, validated
+from agents.parameters.declared import Count, Probability
+from agents.parameters.validation import validated
 from envs.compilation.kernels import compile_loop
 
 _SWEEPS, _TOLERANCE = 5000, 1e-6  # of value iteration
-_HOPELESS = -1e6  # worth of a cell without points
+_HOPELESS = -1e6  # value of a cell without points
 _ROBERTS = (
     0.7548776662466927,
     0.5698402909980532,
@@ -29,11 +29,11 @@ _STARTS, _PATIENCE = 100, 500  # of the drives by which a policy is judged
 
 class _Plan(NamedTuple):
     cells: Cells
-    values: Table
-    policy: Counts
+    values: Floats
+    policy: Integers
 
 
-class GridPlanner(DoesNotLearn, _Plan):
+class ValueIteration(DoesNotLearn, _Plan):
     """Knows the hill but sees cells: drives by the solution of the digitized model. It learns nothing.
 
     In the digitized model the car is, in each step anew, anywhere in its cell, all places equally likely.
@@ -50,6 +50,8 @@ class GridPlanner(DoesNotLearn, _Plan):
     """
 
     __slots__ = ()
+    name = "value-iteration"
+    citation = "Planning on the digitized hill: what a grid can do without any learning."
 
     @classmethod
     @validated
@@ -81,9 +83,9 @@ class GridPlanner(DoesNotLearn, _Plan):
         rng = rng or np.random.default_rng()
         cells = make_cells(task, bins, binning, rng)
         shape = (cells.size, task.n_actions)
-        values, visits, worth = np.zeros(shape), np.zeros(shape, np.int64), np.zeros(cells.size + 1)
-        model = CellModel.of_size(*shape)
-        arguments = (task, cells, model, samples * cells.size, discount, values, visits, worth)
+        values, visits, state_values = np.zeros(shape), np.zeros(shape, np.int64), np.zeros(cells.size + 1)
+        model = CellModel.empty(*shape)
+        arguments = (task, cells, model, samples * cells.size, discount, values, visits, state_values)
         compile_loop(plan, *arguments)(*arguments)
         policy = np.array([best_action(values, cell) for cell in range(cells.size)], np.int64)
         if polish:
@@ -103,9 +105,9 @@ def plan(
     model: CellModel,
     points: int,
     discount: float,
-    values: Table,
-    visits: Counts,
-    worth: NDArray[np.float64],
+    values: Floats,
+    visits: Integers,
+    state_values: Floats,
 ) -> None:
     """Estimate the model, and solve it by value iteration in place (Gauss-Seidel).
 
@@ -117,7 +119,7 @@ def plan(
         discount: gamma.
         values: filled, shape (cells, actions).
         visits: filled with how often each action was tried in each cell, shape (cells, actions).
-        worth: filled with the best value of each cell; that of the goal is 0. Shape (cells + 1,).
+        state_values: filled with the best value of each cell; that of the goal is 0. Shape (cells + 1,).
     """
     n_cells, n_actions = values.shape
     for point in range(points):
@@ -134,23 +136,23 @@ def plan(
             visits[cell, action] += 1
     for cell in range(n_cells):
         if visits[cell, 0] == 0:
-            worth[cell] = _HOPELESS
+            state_values[cell] = _HOPELESS
     sweeps, greatest = 0, 1.0
     while sweeps < _SWEEPS and greatest > _TOLERANCE:
         sweeps, greatest = sweeps + 1, 0.0
         for cell in range(n_cells):
             if visits[cell, 0] > 0:
-                greatest = max(greatest, model.back_up(values, visits, worth, cell, 1, discount))
+                greatest = max(greatest, model.backup(values, visits, state_values, cell, 1, discount))
 
 
 def improve(
     hill: Any,
     cells: Cells,
-    starts: NDArray[np.float64],
+    starts: Floats,
     rounds: int,
     n_actions: int,
-    policy: Counts,
-    passed: Counts,
+    policy: Integers,
+    passed: Integers,
 ) -> None:
     """Change the action of one cell after the other where that makes drives shorter.
 
@@ -183,7 +185,7 @@ def improve(
             total_steps(hill, cells, starts, policy, passed)
 
 
-def total_steps(hill: Any, cells: Cells, starts: NDArray[np.float64], policy: Counts, passed: Counts) -> int:
+def total_steps(hill: Any, cells: Cells, starts: Floats, policy: Integers, passed: Integers) -> int:
     """The steps of drives from all starts; ``passed`` is filled with those taken in each cell."""
     passed[:] = 0
     total = 0

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from typing import Any, Literal, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from agents.contract import Floats
 from agents.discretization.edge_grid import EdgeGrid
 from agents.discretization.grid import Grid
 from agents.discretization.voronoi import Voronoi
@@ -61,7 +61,7 @@ def make_cells(task: Any, bins: Bins, binning: Binning, rng: np.random.Generator
     return EdgeGrid.from_edges([tuple(map(float, row)) for row in rows])
 
 
-def _clusters(visited: NDArray[np.float64], size: int) -> Voronoi:
+def _clusters(visited: Floats, size: int) -> Voronoi:
     from scipy.cluster.vq import kmeans2
 
     scale = visited.std(axis=0)
@@ -74,17 +74,17 @@ def _clusters(visited: NDArray[np.float64], size: int) -> Voronoi:
     return Voronoi(centres, tuple(map(float, scale)))
 
 
-def _visited(task: Any, rng: np.random.Generator) -> NDArray[np.float64]:
+def _visited(task: Any, rng: np.random.Generator) -> Floats:
     """Observations of drives that hold random actions for random times."""
-    found = np.empty((_SAMPLES, len(task.low)))
+    visited = np.empty((_SAMPLES, len(task.low)))
     hold, action = 0, 0
     state = task.reset(rng)
     for step in range(_SAMPLES):
-        found[step] = task.observe(state)
+        visited[step] = task.observe(state)
         if hold == 0:
             hold, action = int(rng.integers(1, _HOLD + 1)), int(rng.integers(task.n_actions))
         hold -= 1
         state, _, terminated = task.step(state, action)
         if terminated or step % _EPISODE == _EPISODE - 1:
             state = task.reset(rng)
-    return found
+    return visited

@@ -6,9 +6,8 @@ from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.contract import Observation
+from agents.contract import Floats, Integers, Observation
 from envs.foundation.checks import number
 from envs.foundation.errors import InvalidValueError
 
@@ -24,7 +23,7 @@ class EdgeGrid(NamedTuple):
     """
 
     bins: tuple[int, ...]
-    inner: NDArray[np.float64]
+    inner: Floats
 
     @classmethod
     def from_edges(cls, edges: Sequence[Sequence[float]]) -> Self:
@@ -71,6 +70,6 @@ class EdgeGrid(NamedTuple):
             cell = cell * self.bins[d] + low
         return cell
 
-    def fill(self, observation: Observation, active: NDArray[np.int64]) -> None:
+    def fill(self, observation: Observation, active: Integers) -> None:
         """Write the cell as the only active feature."""
         active[0] = self.encode(observation)

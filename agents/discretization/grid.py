@@ -6,9 +6,8 @@ from fractions import Fraction
 from typing import Any, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.contract import Observation, Task
+from agents.contract import Floats, Integers, Observation, Task
 from envs.foundation.checks import instance, integer, number
 from envs.foundation.errors import InvalidValueError
 
@@ -18,7 +17,7 @@ class _Parts(NamedTuple):
     high: tuple[float, ...]
     bins: tuple[int, ...]
     scale: tuple[float, ...]
-    edges: NDArray[np.float64]
+    edges: Floats
 
 
 class Grid(_Parts):
@@ -105,7 +104,7 @@ class Grid(_Parts):
             cell = cell * self.bins[d] + k
         return cell
 
-    def fill(self, observation: Observation, active: NDArray[np.int64]) -> None:
+    def fill(self, observation: Observation, active: Integers) -> None:
         """Write the cell as the only active feature."""
         active[0] = self.encode(observation)
 
@@ -118,7 +117,7 @@ def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:
     return counts
 
 
-def _edges(low: float, high: float, bins: int) -> NDArray[np.float64]:
+def _edges(low: float, high: float, bins: int) -> Floats:
     """The least float in each cell: the exact edge, rounded up."""
     a, h = Fraction(low), (Fraction(high) - Fraction(low)) / bins
     edges = np.empty(bins)
@@ -132,7 +131,7 @@ def _edges(low: float, high: float, bins: int) -> NDArray[np.float64]:
     return edges
 
 
-def _scale(low: float, high: float, bins: int, edges: NDArray[np.float64]) -> float:
+def _scale(low: float, high: float, bins: int, edges: Floats) -> float:
     """The largest tried factor with which ``encode`` is exact at every edge, hence everywhere.
 
     ``encode`` grows with the value, so it is exact if it is on both sides of each edge.

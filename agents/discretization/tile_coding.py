@@ -5,9 +5,8 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.contract import Observation, Task
+from agents.contract import Integers, Observation, Task
 from envs.foundation.checks import instance, integer, number
 from envs.foundation.errors import InvalidValueError
 
@@ -17,7 +16,7 @@ class _Parts(NamedTuple):
     high: tuple[float, ...]
     tilings: int
     tiles: tuple[int, ...]
-    features: NDArray[np.int64]
+    features: Integers
 
 
 class TileCoding(_Parts):
@@ -95,7 +94,7 @@ class TileCoding(_Parts):
         """Features that are active at once: one a tiling."""
         return self.tilings
 
-    def fill(self, observation: Observation, active: NDArray[np.int64]) -> None:
+    def fill(self, observation: Observation, active: Integers) -> None:
         """Write the numbers, in [0, size), of the features that are active.
 
         Args:
@@ -114,7 +113,7 @@ class TileCoding(_Parts):
                 active[t] += self.features[d, place, t]
 
 
-def _features(tilings: int, tiles: tuple[int, ...]) -> NDArray[np.int64]:
+def _features(tilings: int, tiles: tuple[int, ...]) -> Integers:
     """What ``fill`` adds up; the features of tiling t are one block, its last dimension fastest."""
     t = np.arange(tilings)
     features = np.zeros((len(tiles), max(tiles) * tilings + 1, tilings), np.int64)

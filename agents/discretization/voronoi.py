@@ -3,10 +3,7 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from agents.contract import Observation
+from agents.contract import Floats, Integers, Observation
 
 
 class Voronoi(NamedTuple):
@@ -17,7 +14,7 @@ class Voronoi(NamedTuple):
         scale: of each dimension.
     """
 
-    centres: NDArray[np.float64]
+    centres: Floats
     scale: tuple[float, ...]
 
     @property
@@ -42,6 +39,6 @@ class Voronoi(NamedTuple):
                 nearest, least = cell, distance
         return nearest
 
-    def fill(self, observation: Observation, active: NDArray[np.int64]) -> None:
+    def fill(self, observation: Observation, active: Integers) -> None:
         """Write the cell as the only active feature."""
         active[0] = self.encode(observation)

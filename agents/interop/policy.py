@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from agents.contract import Integers
 from envs.foundation.errors import InvalidValueError
 
 
@@ -43,7 +43,7 @@ class Policy:
 
     def predict(
         self, observation: Any, state: Any = None, episode_start: Any = None, deterministic: bool = True
-    ) -> tuple[NDArray[np.int64], Any]:
+    ) -> tuple[Integers, Any]:
         """The same for what expects a model of Stable-Baselines3, such as its ``evaluate_policy``.
 
         Args:

@@ -76,7 +76,7 @@ class PolicyAgent(DoesNotLearn):
     def fingerprint(self, *, backwards: bool = False) -> str:
         """A digest of what the policy does at 1,000 places all over the hill.
 
-        Where it raises it does nothing: that is told by the runs, which fail.
+        Where it raises it does nothing: the runs say so: they fail.
 
         Args:
             backwards: ask for the places from the last to the first; no matter to a policy without memory.
@@ -111,7 +111,7 @@ def _action(returned: Any) -> int:
     action, state = returned if isinstance(returned, tuple) and len(returned) == 2 else (returned, None)
     if state is not None:
         raise InvalidValueError(f"policy must go by the observation alone, got one with a state: {state!r}")
-    found = np.asarray(action)
-    if found.size != 1 or found.dtype.kind not in "iu":
+    array = np.asarray(action)
+    if array.size != 1 or array.dtype.kind not in "iu":
         raise InvalidValueError(f"policy must return one action, an integer, got {action!r}")
-    return int(found.item())
+    return int(array.item())

@@ -1,13 +1,11 @@
-"""Choices from a table of action values."""
+"""Choices from a table of action values, float64, shape (cells, actions)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Table = NDArray[np.float64]
-Counts = NDArray[np.int64]
+from agents.contract import Floats
 
 
-def best_action(values: Table, cell: int) -> int:
+def best_action(values: Floats, cell: int) -> int:
     """The action with the greatest value in ``cell`` (Eq. 14); of equal ones the lowest."""
     best = 0
     value = values[cell, 0]
@@ -18,7 +16,7 @@ def best_action(values: Table, cell: int) -> int:
     return best
 
 
-def epsilon_greedy(values: Table, cell: int, epsilon: float, rng: np.random.Generator) -> int:
+def epsilon_greedy(values: Floats, cell: int, epsilon: float, rng: np.random.Generator) -> int:
     """With probability ``epsilon`` any action, all equally likely, else the best one."""
     if rng.random() < epsilon:
         return int(rng.random() * values.shape[1])

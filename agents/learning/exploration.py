@@ -5,13 +5,16 @@ it would choose (needed by Expected SARSA). Arrays ``values`` and ``visits`` hav
 """
 
 import math
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
-from agents.learning.action_values import Counts, Table, best_action, epsilon_greedy
+from agents.contract import Floats, Integers
+from agents.learning.action_values import best_action, epsilon_greedy
 from agents.learning.schedules import LinearDecay
-from envs.foundation.checks import Validated, number
+from agents.learning.targets import epsilon_greedy_value, greatest_value, softmax_value
+from agents.parameters.declared import NonNegative, Positive
+from agents.parameters.validation import validated
 
 
 class EpsilonGreedy(NamedTuple):
@@ -20,27 +23,18 @@ class EpsilonGreedy(NamedTuple):
     epsilon: LinearDecay
 
     def choose(
-        self, values: Table, visits: Counts, cell: int, progress: float, rng: np.random.Generator
+        self, values: Floats, visits: Integers, cell: int, progress: float, rng: np.random.Generator
     ) -> int:
         """The action to take in ``cell``."""
         return epsilon_greedy(values, cell, self.epsilon.at(progress), rng)
 
-    def expected(self, values: Table, visits: Counts, cell: int, progress: float) -> float:
+    def expected(self, values: Floats, visits: Integers, cell: int, progress: float) -> float:
         """The mean value of ``cell`` under this policy."""
-        epsilon = self.epsilon.at(progress)
-        total = 0.0
-        for action in range(values.shape[1]):
-            total += values[cell, action]
-        mean, best = total / values.shape[1], values[cell, best_action(values, cell)]
-        return epsilon * mean + (1.0 - epsilon) * best  # type: ignore[no-any-return]  # an array has it
+        return epsilon_greedy_value(values, cell, self.epsilon.at(progress))
 
 
-class _Temperatures(NamedTuple):
-    start: float
-    end: float
-
-
-class Softmax(Validated, _Temperatures):  # type: ignore[misc]  # both have _make
+@validated
+class Softmax(NamedTuple):
     """Actions with probabilities in proportion to ``exp(value / temperature)`` (Sutton & Barto 2018, 13.1).
 
     Args:
@@ -51,20 +45,18 @@ class Softmax(Validated, _Temperatures):  # type: ignore[misc]  # both have _mak
         TypeError, ValueError: when one of them breaks its rule.
     """
 
-    __slots__ = ()
-
-    def __new__(cls, start: float = 1.0, end: float = 0.05) -> Self:  # noqa: D102 (described by the class)
-        return super().__new__(cls, number("start", start, 0, above=True), number("end", end, 0, above=True))
+    start: Positive = 1.0
+    end: Positive = 0.05
 
     def at(self, progress: float) -> float:
         """The temperature when the share ``progress`` of the training is done."""
         return self.start + (self.end - self.start) * progress
 
     def choose(
-        self, values: Table, visits: Counts, cell: int, progress: float, rng: np.random.Generator
+        self, values: Floats, visits: Integers, cell: int, progress: float, rng: np.random.Generator
     ) -> int:
         """The action to take in ``cell``."""
-        temperature, best = self.at(progress), values[cell, best_action(values, cell)]
+        temperature, best = self.at(progress), greatest_value(values, cell)
         total = 0.0
         for action in range(values.shape[1]):
             total += math.exp((values[cell, action] - best) / temperature)
@@ -75,22 +67,13 @@ class Softmax(Validated, _Temperatures):  # type: ignore[misc]  # both have _mak
                 return action
         return best_action(values, cell)  # rounding left a rest
 
-    def expected(self, values: Table, visits: Counts, cell: int, progress: float) -> float:
+    def expected(self, values: Floats, visits: Integers, cell: int, progress: float) -> float:
         """The mean value of ``cell`` under this policy."""
-        temperature, best = self.at(progress), values[cell, best_action(values, cell)]
-        total, weighted = 0.0, 0.0
-        for action in range(values.shape[1]):
-            weight = math.exp((values[cell, action] - best) / temperature)
-            total += weight
-            weighted += weight * values[cell, action]
-        return weighted / total
+        return softmax_value(values, cell, self.at(progress))
 
 
-class _Confidence(NamedTuple):
-    c: float
-
-
-class UpperConfidence(Validated, _Confidence):  # type: ignore[misc]  # both have _make
+@validated
+class UpperConfidence(NamedTuple):
     """The action with the greatest ``value + c sqrt(ln N / n)``, one untried before all others.
 
     UCB1 (Auer et al. 2002; Sutton & Barto 2018, 2.7), with N the visits of the cell and n those in which
@@ -103,13 +86,10 @@ class UpperConfidence(Validated, _Confidence):  # type: ignore[misc]  # both hav
         TypeError, ValueError: when it breaks its rule.
     """
 
-    __slots__ = ()
-
-    def __new__(cls, c: float = 1.0) -> Self:  # noqa: D102 (described by the class)
-        return super().__new__(cls, number("c", c, 0))
+    c: NonNegative = 1.0
 
     def choose(
-        self, values: Table, visits: Counts, cell: int, progress: float, rng: np.random.Generator
+        self, values: Floats, visits: Integers, cell: int, progress: float, rng: np.random.Generator
     ) -> int:
         """The action to take in ``cell``."""
         total = 0
@@ -124,9 +104,9 @@ class UpperConfidence(Validated, _Confidence):  # type: ignore[misc]  # both hav
                 best, bound = action, hope
         return best
 
-    def expected(self, values: Table, visits: Counts, cell: int, progress: float) -> float:
+    def expected(self, values: Floats, visits: Integers, cell: int, progress: float) -> float:
         """The value of the action that is the best so far: what is tried beside it is curiosity."""
-        return values[cell, best_action(values, cell)]  # type: ignore[no-any-return]  # an array has it
+        return greatest_value(values, cell)
 
 
 Exploration = EpsilonGreedy | Softmax | UpperConfidence

@@ -1,17 +1,16 @@
 """How epsilon and the step size change while an agent learns."""
 
-from typing import NamedTuple, Self
+from typing import Annotated, NamedTuple, Self
 
-from envs.foundation.checks import Validated, number
+from annotated_types import Interval
 
-
-class _Line(NamedTuple):
-    start: float
-    end: float
-    until: float
+from agents.parameters.declared import NonNegative, Positive, Probability
+from agents.parameters.validation import validated
+from envs.foundation.checks import number
 
 
-class LinearDecay(Validated, _Line):  # type: ignore[misc]  # both have _make
+@validated
+class LinearDecay(NamedTuple):
     """From ``start`` to ``end`` in a straight line over the training (paper, section 4.3).
 
     Args:
@@ -23,16 +22,14 @@ class LinearDecay(Validated, _Line):  # type: ignore[misc]  # both have _make
         TypeError, ValueError: when one of them breaks its rule.
     """
 
-    __slots__ = ()
-
-    def __new__(cls, start: float = 0.6, end: float = 0.01, until: float = 1.0) -> Self:  # noqa: D102 (described by the class)
-        start, end = number("start", start, 0, 1), number("end", end, 0, 1)
-        return super().__new__(cls, start, end, number("until", until, 0, 1, above=True))
+    start: Probability = 0.6
+    end: Probability = 0.01
+    until: Annotated[float, Interval(gt=0, le=1)] = 1.0
 
     @classmethod
     def of(cls, value: Self | float) -> Self:
         """``value`` itself, a number as a constant."""
-        return value if isinstance(value, cls) else cls(value, value)  # type: ignore[arg-type]  # a number then
+        return cls(value, value) if isinstance(value, (int, float)) else value
 
     def at(self, progress: float) -> float:
         """The value when the share ``progress`` of the episodes is done."""
@@ -41,13 +38,8 @@ class LinearDecay(Validated, _Line):  # type: ignore[misc]  # both have _make
         return self.start + (self.end - self.start) * (progress / self.until)
 
 
-class _Harmonic(NamedTuple):
-    A: float
-    B: float
-    C: float
-
-
-class HarmonicRate(Validated, _Harmonic):  # type: ignore[misc]  # both have _make
+@validated
+class HarmonicRate(NamedTuple):
     """Step size ``A / (B + C n)`` after n visits (paper, Eq. 15); ``C = 0`` is the constant A / B.
 
     Args:
@@ -59,11 +51,13 @@ class HarmonicRate(Validated, _Harmonic):  # type: ignore[misc]  # both have _ma
         TypeError, ValueError: when one of them breaks its rule.
     """
 
-    __slots__ = ()
+    A: Positive = 1.0
+    B: Positive = 10.0
+    C: NonNegative = 0.01
 
-    def __new__(cls, A: float = 1.0, B: float = 10.0, C: float = 0.01) -> Self:  # noqa: D102 (described by the class)
-        a = number("A", A, 0, above=True)
-        return super().__new__(cls, a, number("B", B, a), number("C", C, 0))
+    def __post_init__(self) -> None:
+        """See that no step is larger than 1."""
+        number("B", self.B, self.A)
 
     def at(self, visits: int) -> float:
         """The step size for the visit after ``visits`` earlier ones."""

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agents.learning.action_values import Counts, Table
+from agents.contract import Floats, Integers
 from agents.learning.schedules import HarmonicRate
+from agents.learning.targets import bootstrapped
 
 
 class GoalRule(IntEnum):
@@ -38,18 +39,18 @@ class Update(NamedTuple):
     discount: float
     goal: GoalRule
     counting: Counting
-    episodes: Counts  # (cells, actions): episodes with a visit
-    latest: Counts  # (cells, actions): the latest of them
-    now: Counts  # (1,): this episode
+    episodes: Integers  # (cells, actions): episodes with a visit
+    latest: Integers  # (cells, actions): the latest of them
+    episode: Integers  # (1,): the number of this one
 
     def begin_episode(self) -> None:
         """Count the episode."""
-        self.now[0] += 1
+        self.episode[0] += 1
 
     def apply(
         self,
-        values: Table,
-        visits: Counts,
+        values: Floats,
+        visits: Integers,
         cell: int,
         action: int,
         reward: float,
@@ -74,10 +75,10 @@ class Update(NamedTuple):
             terminated: whether the step reached the goal.
         """
         if not terminated or self.goal == GoalRule.BOOTSTRAP:
-            return reward + self.discount * following
+            return bootstrapped(reward, self.discount, following)
         return reward if self.goal == GoalRule.TERMINAL else 0.0
 
-    def earlier(self, visits: Counts, cell: int, action: int) -> int:
+    def earlier(self, visits: Integers, cell: int, action: int) -> int:
         """The number n of Eq. (15); where episodes are counted, this one is from now on."""
         if self.counting == Counting.STEP:
             return visits[cell, action]  # type: ignore[no-any-return]  # an array has it
@@ -86,8 +87,8 @@ class Update(NamedTuple):
             for other in range(visits.shape[1]):
                 total += visits[cell, other]
             return total
-        if self.latest[cell, action] != self.now[0]:
-            self.latest[cell, action] = self.now[0]
+        if self.latest[cell, action] != self.episode[0]:
+            self.latest[cell, action] = self.episode[0]
             self.episodes[cell, action] += 1
         return self.episodes[cell, action] - 1  # type: ignore[no-any-return]  # an array has it
 
@@ -104,6 +105,6 @@ def make_update(
         count_visits: ``"step"``, ``"episode"`` or ``"state"``, see ``Counting``.
         goal: ``"terminal"``, ``"bootstrap"`` or ``"zero"``, see ``GoalRule``.
     """
-    episodes, latest, now = (np.zeros(size, np.int64) for size in (shape, shape, 1))
+    episodes, latest, episode = (np.zeros(size, np.int64) for size in (shape, shape, 1))
     rule, counting = GoalRule[goal.upper()], Counting[count_visits.upper()]
-    return Update(step_size, discount, rule, counting, episodes, latest, now)
+    return Update(step_size, discount, rule, counting, episodes, latest, episode)

@@ -5,7 +5,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.contract import Observation
+from agents.contract import Floats, Integers, Observation
 
 
 class Batch(NamedTuple):
@@ -19,14 +19,14 @@ class Batch(NamedTuple):
         goes_on: bool, shape (places,): whether the step did not reach the goal.
     """
 
-    observations: NDArray[np.float64]
-    actions: NDArray[np.int64]
-    rewards: NDArray[np.float64]
-    next_observations: NDArray[np.float64]
+    observations: Floats
+    actions: Integers
+    rewards: Floats
+    next_observations: Floats
     goes_on: NDArray[np.bool_]
 
     @classmethod
-    def room_for(cls, places: int, dimensions: int) -> Self:
+    def with_capacity(cls, places: int, dimensions: int) -> Self:
         """A batch of steps that are still to be written."""
         observations, next_observations = np.zeros((2, places, dimensions))
         actions, rewards = np.zeros(places, np.int64), np.zeros(places)

@@ -3,9 +3,9 @@
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.learning.action_values import Counts, Table, best_action
+from agents.contract import Floats, Integers
+from agents.learning.targets import greatest_value
 
 SUCCESSORS = 8
 """Different cells that are kept for a pair; on the hill, cells of any kind were seen to need six."""
@@ -25,23 +25,23 @@ class CellModel(NamedTuple):
         successors: int64, shape (pairs, SUCCESSORS): the cells it led to.
         counts: int64, shape (pairs, SUCCESSORS): how often; 0 from the first free place on.
         first: int64, shape (cells + 1,): the first link to each cell, -1 if there is none.
-        following: int64, shape (pairs * SUCCESSORS,): the next link to the same cell, -1 after the last.
+        next_link: int64, shape (pairs * SUCCESSORS,): the next one to the same cell, -1 after the last.
     """
 
-    tries: Counts
-    rewards: NDArray[np.float64]
-    successors: Counts
-    counts: Counts
-    first: Counts
-    following: Counts
+    tries: Integers
+    rewards: Floats
+    successors: Integers
+    counts: Integers
+    first: Integers
+    next_link: Integers
 
     @classmethod
-    def of_size(cls, cells: int, actions: int) -> Self:
+    def empty(cls, cells: int, actions: int) -> Self:
         """A model that has seen nothing."""
         pairs = cells * actions
         successors, counts = np.zeros((2, pairs, SUCCESSORS), np.int64)
-        first, following = np.full(cells + 1, -1), np.full(pairs * SUCCESSORS, -1)
-        return cls(np.zeros(pairs, np.int64), np.zeros(pairs), successors, counts, first, following)
+        first, next_link = np.full(cells + 1, -1), np.full(pairs * SUCCESSORS, -1)
+        return cls(np.zeros(pairs, np.int64), np.zeros(pairs), successors, counts, first, next_link)
 
     def observe(self, pair: int, reward: float, successor: int) -> None:
         """Count a step of ``pair`` that led to ``successor``."""
@@ -58,7 +58,7 @@ class CellModel(NamedTuple):
         if self.counts[pair, place] == 0:
             link = pair * SUCCESSORS + place
             self.successors[pair, place] = successor
-            self.following[link] = self.first[successor]
+            self.next_link[link] = self.first[successor]
             self.first[successor] = link
         self.counts[pair, place] += 1
         self.tries[pair] += 1
@@ -68,51 +68,51 @@ class CellModel(NamedTuple):
         """Free a place, and take its link out of the chain."""
         link, successor = pair * SUCCESSORS + place, self.successors[pair, place]
         if self.first[successor] == link:
-            self.first[successor] = self.following[link]
+            self.first[successor] = self.next_link[link]
         else:
             before = self.first[successor]
-            while self.following[before] != link:
-                before = self.following[before]
-            self.following[before] = self.following[link]
+            while self.next_link[before] != link:
+                before = self.next_link[before]
+            self.next_link[before] = self.next_link[link]
         self.tries[pair] -= self.counts[pair, place]
         self.counts[pair, place] = 0
 
-    def expected(self, pair: int, worth: NDArray[np.float64], discount: float) -> float:
-        """The mean of the reward and the discounted worth of what follows.
+    def expected(self, pair: int, state_values: Floats, discount: float) -> float:
+        """The mean of the reward and the discounted value of what follows.
 
         Args:
             pair: one that was tried.
-            worth: of each cell and of the goal, shape (cells + 1,).
+            state_values: of each cell and of the goal, shape (cells + 1,).
             discount: gamma.
         """
         place, total = 0, 0.0
         while place < SUCCESSORS and self.counts[pair, place] > 0:
-            total += self.counts[pair, place] * worth[self.successors[pair, place]]
+            total += self.counts[pair, place] * state_values[self.successors[pair, place]]
             place += 1
         return self.rewards[pair] + discount * total / self.tries[pair]  # type: ignore[no-any-return]  # an array has it
 
-    def back_up(
+    def backup(
         self,
-        values: Table,
-        visits: Counts,
-        worth: NDArray[np.float64],
+        values: Floats,
+        visits: Integers,
+        state_values: Floats,
         cell: int,
         known: int,
         discount: float,
     ) -> float:
-        """Set the values of a cell to what is expected; by how much that changes its worth.
+        """Set the values of a cell to what is expected, and return by how much that changes the best of them.
 
         Args:
             values: float64, shape (cells, actions); changed where an action is known.
             visits: int64, shape (cells, actions).
-            worth: the best value of each cell, and 0 of the goal, shape (cells + 1,); changed.
+            state_values: the best value of each cell, and 0 of the goal, shape (cells + 1,); changed.
             cell: the cell.
             known: visits that make an action of it known, at least 1.
             discount: gamma.
         """
         for action in range(values.shape[1]):
             if visits[cell, action] >= known:
-                values[cell, action] = self.expected(cell * values.shape[1] + action, worth, discount)
-        before = worth[cell]
-        worth[cell] = values[cell, best_action(values, cell)]
-        return abs(worth[cell] - before)  # type: ignore[no-any-return]  # an array has it
+                values[cell, action] = self.expected(cell * values.shape[1] + action, state_values, discount)
+        before = state_values[cell]
+        state_values[cell] = greatest_value(values, cell)
+        return abs(state_values[cell] - before)  # type: ignore[no-any-return]  # an array has it

@@ -3,10 +3,8 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
-Leaves = NDArray[np.int64]
+from agents.contract import Floats, Integers
 
 
 class Forest:
@@ -22,7 +20,7 @@ class Forest:
         means: float64: the prediction of each leaf, all trees in a row.
     """
 
-    def __init__(self, points: Points, targets: NDArray[np.float64], tries: int, **parameters: Any) -> None:
+    def __init__(self, points: Floats, targets: Floats, tries: int, **parameters: Any) -> None:
         from sklearn.ensemble import ExtraTreesRegressor
 
         self.trees = ExtraTreesRegressor(**parameters, max_features=tries, n_jobs=1).fit(points, targets)
@@ -32,15 +30,15 @@ class Forest:
         self.counts = np.maximum(np.bincount(self.own.ravel(), minlength=sum(nodes)), 1)
         self.fill(targets)
 
-    def leaves(self, points: Points) -> Leaves:
+    def leaves(self, points: Floats) -> Integers:
         """The leaves in which points are, shape (points, trees)."""
         return np.asarray(self.trees.apply(points) + self.offsets)
 
-    def fill(self, targets: NDArray[np.float64]) -> None:
+    def fill(self, targets: Floats) -> None:
         """Let the leaves predict other targets of the same points; the trees stay as they are."""
         weights = np.repeat(targets, self.own.shape[1])
         self.means = np.bincount(self.own.ravel(), weights, len(self.counts)) / self.counts
 
-    def predict(self, leaves: Leaves) -> NDArray[np.float64]:
+    def predict(self, leaves: Integers) -> Floats:
         """The predictions for points in these leaves, shape (points,)."""
         return np.asarray(self.means[leaves].mean(axis=1))

@@ -3,9 +3,8 @@
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.learning.action_values import Counts
+from agents.contract import Floats, Integers
 
 
 class PriorityQueue(NamedTuple):
@@ -14,24 +13,24 @@ class PriorityQueue(NamedTuple):
     Attributes:
         heap: int64, shape (size,): the numbers in the queue. That at place k has no lesser priority
             than those at places 2k + 1 and 2k + 2.
-        places: int64, shape (size,): where each number is in the heap, -1 if it is not.
+        positions: int64, shape (size,): where each number is in the heap, -1 if it is not.
         priorities: float64, shape (size,): of each number, 0 if it is not in the queue.
         length: int64, shape (1,): how many are in the queue.
     """
 
-    heap: Counts
-    places: Counts
-    priorities: NDArray[np.float64]
-    length: Counts
+    heap: Integers
+    positions: Integers
+    priorities: Floats
+    length: Integers
 
     @classmethod
-    def of_size(cls, size: int) -> Self:
+    def empty(cls, size: int) -> Self:
         """An empty queue for the numbers below ``size``."""
         return cls(np.zeros(size, np.int64), np.full(size, -1), np.zeros(size), np.zeros(1, np.int64))
 
     def put(self, number: int, priority: float) -> None:
         """Put ``number`` into the queue, or change its priority."""
-        place = self.places[number]
+        place = self.positions[number]
         if place < 0:
             place = self.length[0]
             self.length[0] += 1
@@ -44,7 +43,7 @@ class PriorityQueue(NamedTuple):
     def pop(self) -> int:
         """Take out the number of the greatest priority; there must be one."""
         number = self.heap[0]
-        self.places[number] = -1
+        self.positions[number] = -1
         self.priorities[number] = 0.0
         self.length[0] -= 1
         if self.length[0] > 0:
@@ -66,7 +65,7 @@ class PriorityQueue(NamedTuple):
     def move(self, number: int, place: int) -> None:
         """Write ``number`` at ``place``."""
         self.heap[place] = number
-        self.places[number] = place
+        self.positions[number] = place
 
     def priority_at(self, place: int) -> float:
         """The priority of the number at ``place``."""

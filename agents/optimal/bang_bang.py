@@ -1,14 +1,11 @@
 """Drives of full thrust that change its direction a few times: all patterns of switches, and the best one."""
 
-import numpy as np
-from numpy.typing import NDArray
-
-from agents.learning.action_values import Counts
-from agents.optimal.relaxed_car import MOST, Spacing
+from agents.contract import Floats, Integers
+from agents.optimal.relaxed_car import MAX_SWITCHES, Spacing
 from envs import Hill
 
 
-def first_pattern(steps: Counts, switches: int, gap: int, last: int) -> bool:
+def first_pattern(steps: Integers, switches: int, gap: int, last: int) -> bool:
     """Write the earliest pattern: switch ``a`` in step ``a * gap``; whether it is one.
 
     Args:
@@ -22,7 +19,7 @@ def first_pattern(steps: Counts, switches: int, gap: int, last: int) -> bool:
     return switches == 0 or (last >= 0 and bool(steps[switches - 1] <= last))
 
 
-def next_pattern(steps: Counts, switches: int, gap: int, last: int) -> bool:
+def next_pattern(steps: Integers, switches: int, gap: int, last: int) -> bool:
     """Write the pattern that follows, in lexical order; whether there is one.
 
     Args:
@@ -42,7 +39,7 @@ def next_pattern(steps: Counts, switches: int, gap: int, last: int) -> bool:
     return True
 
 
-def length(hill: Hill, position: float, switches: int, steps: Counts, coasting: int, most: int) -> int:
+def length(hill: Hill, position: float, switches: int, steps: Integers, coasting: int, most: int) -> int:
     """The steps to the goal of a drive from rest that ends with thrust right, at most ``most``.
 
     Args:
@@ -69,12 +66,12 @@ def length(hill: Hill, position: float, switches: int, steps: Counts, coasting: 
 
 def shorten(
     hill: Hill,
-    positions: NDArray[np.float64],
+    positions: Floats,
     spacing: Spacing,
-    horizons: Counts,
+    horizons: Integers,
     coast: bool,
-    found: Counts,
-    steps: Counts,
+    upper: Integers,
+    steps: Integers,
 ) -> None:
     """Look for shorter drives among all patterns.
 
@@ -84,16 +81,16 @@ def shorten(
         spacing: of the switches.
         horizons: drives as long as this are not looked at; shape (starts,).
         coast: whether to try no thrust in the steps of the switches, too.
-        found: the fewest steps known, shape (starts,); lowered in place.
-        steps: room for ``MOST`` numbers.
+        upper: the fewest steps known, shape (starts,); lowered in place.
+        steps: room for ``MAX_SWITCHES`` numbers.
     """
     for start in range(positions.shape[0]):
-        most = min(found[start], horizons[start])
-        for switches in range(MOST + 1):
+        most = min(upper[start], horizons[start])
+        for switches in range(MAX_SWITCHES + 1):
             more = first_pattern(steps, switches, spacing.gap, most - 1 - spacing.last)
             while more:
                 for coasting in range(1 << switches if coast else 1):
                     needed = length(hill, positions[start], switches, steps, coasting, most)
                     if needed < most:
-                        found[start] = most = needed
+                        upper[start] = most = needed
                 more = next_pattern(steps, switches, spacing.gap, most - 1 - spacing.last)

@@ -3,15 +3,12 @@
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from agents.learning.action_values import Counts
-from agents.optimal.relaxed_car import MOST
+from agents.contract import Floats, Integers
+from agents.optimal.relaxed_car import MAX_SWITCHES
 
 DEPTH = 16
 """A box is halved so often at most."""
-
-Floats = NDArray[np.float64]
 
 
 class Boxes(NamedTuple):
@@ -21,19 +18,20 @@ class Boxes(NamedTuple):
     starts.
 
     Attributes:
-        steps: of the switches, shape (MOST,).
-        middles: of all sides, in units of the full thrust or of the segment, shape (DEPTH + 2, MOST + 1).
+        steps: of the switches, shape (MAX_SWITCHES,).
+        middles: of all sides, in units of the full thrust or of the segment,
+            shape (DEPTH + 2, MAX_SWITCHES + 1).
         halves: of the lengths of all sides, likewise.
         depths: how often each box was halved, shape (DEPTH + 2,).
-        moved: response of the position to half of each side, shape (MOST + 1,).
-        pushed: response of the velocity, shape (MOST + 1,).
-        widest: greatest response of the position in the drive, shape (MOST + 1,).
+        moved: response of the position to half of each side, shape (MAX_SWITCHES + 1,).
+        pushed: response of the velocity, shape (MAX_SWITCHES + 1,).
+        widest: greatest response of the position in the drive, shape (MAX_SWITCHES + 1,).
     """
 
-    steps: Counts
+    steps: Integers
     middles: Floats
     halves: Floats
-    depths: Counts
+    depths: Integers
     moved: Floats
     pushed: Floats
     widest: Floats
@@ -41,9 +39,9 @@ class Boxes(NamedTuple):
     @classmethod
     def make(cls) -> Self:
         """Room for the greatest number of switches."""
-        middles, halves = np.zeros((2, DEPTH + 2, MOST + 1))
-        moved, pushed, widest = np.zeros((3, MOST + 1))
-        steps, depths = np.zeros(MOST, np.int64), np.zeros(DEPTH + 2, np.int64)
+        middles, halves = np.zeros((2, DEPTH + 2, MAX_SWITCHES + 1))
+        moved, pushed, widest = np.zeros((3, MAX_SWITCHES + 1))
+        steps, depths = np.zeros(MAX_SWITCHES, np.int64), np.zeros(DEPTH + 2, np.int64)
         return cls(steps, middles, halves, depths, moved, pushed, widest)
 
     def whole(self, switches: int) -> None:

@@ -18,15 +18,10 @@ Source: validated integration, R. E. Moore, Interval Analysis, 1966.
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from agents.learning.action_values import Counts
+from agents.contract import Floats, Integers
 from agents.optimal.bang_bang import first_pattern, next_pattern
 from agents.optimal.boxes import DEPTH, Boxes
-from agents.optimal.relaxed_car import MOST, Relaxed, Spacing
-
-Floats = NDArray[np.float64]
+from agents.optimal.relaxed_car import MAX_SWITCHES, Relaxed, Spacing
 
 
 class Limit(NamedTuple):
@@ -124,12 +119,14 @@ def first_possible(car: Relaxed, start: Segment, limit: Limit, most: int, patien
         car: what is driven.
         start: where it may start.
         limit: what is looked for.
-        most: where to stop; no more than ``MOST`` switches fit in it.
+        most: where to stop; no more than ``MAX_SWITCHES`` switches fit in it.
         patience: after that many boxes none is halved any more.
         boxes: room to work in.
     """
     switches, gap = 0, limit.spacing.gap
-    while switches <= MOST and first_pattern(boxes.steps, switches, gap, most - 1 - limit.spacing.last):
+    while switches <= MAX_SWITCHES and first_pattern(
+        boxes.steps, switches, gap, most - 1 - limit.spacing.last
+    ):
         more = True
         while more:
             boxes.whole(switches)
@@ -149,7 +146,7 @@ def first_possible(car: Relaxed, start: Segment, limit: Limit, most: int, patien
     return most
 
 
-def exclude(car: Relaxed, starts: Floats, limit: Limit, patience: int, found: Counts, boxes: Boxes) -> None:
+def exclude(car: Relaxed, starts: Floats, limit: Limit, patience: int, lower: Integers, boxes: Boxes) -> None:
     """The first step after which a car from each segment of starts may be beyond the limit.
 
     Args:
@@ -157,9 +154,9 @@ def exclude(car: Relaxed, starts: Floats, limit: Limit, patience: int, found: Co
         starts: the segments, shape (starts, 4).
         limit: what is looked for.
         patience: for each segment, see ``first_possible``.
-        found: where to stop, shape (starts,); lowered in place.
+        lower: where to stop, shape (starts,); lowered in place.
         boxes: room to work in.
     """
     for number in range(starts.shape[0]):
         start = Segment(starts[number, 0], starts[number, 1], starts[number, 2], starts[number, 3])
-        found[number] = first_possible(car, start, limit, found[number], patience, boxes)
+        lower[number] = first_possible(car, start, limit, lower[number], patience, boxes)

@@ -12,6 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from agents.contract import Floats
 from agents.discretization.grid import Grid
 from agents.optimal.relaxed_car import Relaxed
 from envs import Hill
@@ -37,8 +38,8 @@ def best_actions(hill: Hill, cells: Grid) -> NDArray[np.int8]:
     compile_loop(drive_backwards, *arguments)(*arguments)
     unseen = np.isinf(nearest).reshape(cells.bins)
     where = distance_transform_edt(unseen, return_distances=False, return_indices=True)
-    found: NDArray[np.int8] = actions.reshape(cells.bins)[tuple(where)].ravel()
-    return found
+    filled: NDArray[np.int8] = actions.reshape(cells.bins)[tuple(where)].ravel()
+    return filled
 
 
 def drive_backwards(
@@ -47,7 +48,7 @@ def drive_backwards(
     cells: Grid,
     speeds: int,
     phases: int,
-    nearest: NDArray[np.float64],
+    nearest: Floats,
     actions: NDArray[np.int8],
 ) -> None:
     """Drive backwards from all ends.

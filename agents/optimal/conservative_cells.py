@@ -12,21 +12,21 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.learning.action_values import Counts
-from agents.optimal.relaxed_car import FAR
+from agents.contract import Integers
+from agents.optimal.relaxed_car import NEVER
 from envs import Dynamics, Hill, Integrator
 from envs.compilation.kernels import compile_loop
 
 BINS = (800, 800)
-"""Cells along position and velocity, unless told: searched in half a second."""
+"""Cells along position and velocity, unless others are given: searched in half a second."""
 
 _MARGIN = 1e-9  # of a cell: far more than all roundings
 
 Rectangle = tuple[float, float, float, float]
 
 
-def fewest_steps(hill: Hill, bins: tuple[int, int] = BINS) -> NDArray[np.int64]:
-    """A lower bound of the steps to the goal from all states of each cell; ``FAR`` if it cannot be reached.
+def fewest_steps(hill: Hill, bins: tuple[int, int] = BINS) -> Integers:
+    """A lower bound of the steps to the goal from all states of each cell; ``NEVER`` if it cannot be reached.
 
     Args:
         hill: what is driven on.
@@ -40,12 +40,12 @@ def fewest_steps(hill: Hill, bins: tuple[int, int] = BINS) -> NDArray[np.int64]:
     np.cumsum(ends, out=ends)
     links = np.zeros(ends[-1], np.int32)
     link(hill, bins, ends, links)
-    steps, queue = np.full(goal + 1, FAR), np.full(goal + 1, goal)
+    steps, queue = np.full(goal + 1, NEVER), np.full(goal + 1, goal)
     compile_loop(search_backwards, ends, links, steps, queue)(ends, links, steps, queue)
     return steps[:goal]
 
 
-def link_cells(hill: Hill, bins: tuple[int, int], ends: Counts, links: NDArray[np.int32]) -> None:
+def link_cells(hill: Hill, bins: tuple[int, int], ends: Integers, links: NDArray[np.int32]) -> None:
     """Write from which cells each cell is reached in a step; the goal is one more cell after all others.
 
     Those from which cell c is reached will be ``links[ends[c] : ends[c + 1]]``.
@@ -75,7 +75,7 @@ def link_cells(hill: Hill, bins: tuple[int, int], ends: Counts, links: NDArray[n
                 add_link(ends, links, cell, goal)
 
 
-def add_link(ends: Counts, links: NDArray[np.int32], cell: int, target: int) -> None:
+def add_link(ends: Integers, links: NDArray[np.int32], cell: int, target: int) -> None:
     """Count, or write, that ``target`` is reached from ``cell``; see ``link_cells``."""
     if links.shape[0] == 0:
         ends[target + 2] += 1
@@ -84,7 +84,7 @@ def add_link(ends: Counts, links: NDArray[np.int32], cell: int, target: int) -> 
         ends[target + 1] += 1
 
 
-def search_backwards(ends: Counts, links: NDArray[np.int32], steps: Counts, queue: Counts) -> None:
+def search_backwards(ends: Integers, links: NDArray[np.int32], steps: Integers, queue: Integers) -> None:
     """Breadth-first search from the last cell, the goal.
 
     Args:

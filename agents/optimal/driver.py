@@ -1,4 +1,4 @@
-"""The fewest steps to the goal, with a certificate; and a driver that needs hardly more."""
+"""A driver by a table of best actions."""
 
 from functools import lru_cache
 from typing import NamedTuple, Self
@@ -11,7 +11,8 @@ from agents.contract import Observation
 from agents.discretization.grid import Grid
 from agents.optimal.characteristics import best_actions
 from agents.optimal.relaxed_car import Relaxed
-from agents.parameters.declared import Count, validated
+from agents.parameters.declared import Count
+from agents.parameters.validation import validated
 from envs import Dynamics, Hill
 from envs.foundation.checks import instance
 from envs.foundation.errors import InvalidValueError
@@ -34,6 +35,8 @@ class Optimal(DoesNotLearn, _Table):
     """
 
     __slots__ = ()
+    name = "optimal"
+    citation = "The fewest steps to the goal, with a certificate; and a driver that needs hardly more."
 
     @classmethod
     @validated

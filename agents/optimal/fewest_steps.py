@@ -9,28 +9,23 @@ How it is proved: ``agents.optimal.relaxed_car`` (what an optimal drive looks li
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from agents.baselines import MomentumAgent
+from agents.contract import Floats, Integers
 from agents.optimal.bang_bang import shorten
 from agents.optimal.conservative_cells import BINS, cell_of, fewest_steps
 from agents.optimal.driver import Optimal
 from agents.optimal.lower_bound import affordable, lower_bound
-from agents.optimal.relaxed_car import FAR, MOST, Relaxed, spacing
+from agents.optimal.relaxed_car import MAX_SWITCHES, NEVER, Relaxed, spacing
 from envs import Hill
 from envs.compilation.kernels import compile_loop
 from envs.foundation.checks import instance, number
 
-NEVER = FAR
-"""Steps from where the goal is not reached: as a lower bound, it is proved that it cannot be (in fewer)."""
-
 _PATIENCE = 20_000  # steps of a drive that seeks the goal
 
-Steps = NDArray[np.int64]
-Floats = NDArray[np.float64]
 
-
-def optimal_steps(hill: Hill, positions: ArrayLike) -> tuple[Steps, Steps]:
+def optimal_steps(hill: Hill, positions: ArrayLike) -> tuple[Integers, Integers]:
     """Bounds of the fewest steps to the goal from rest at each position.
 
     The upper bound is attained by a drive on the hill, the lower one is proved by a computation, roundings
@@ -58,8 +53,8 @@ def optimal_steps(hill: Hill, positions: ArrayLike) -> tuple[Steps, Steps]:
     missing = np.array(sorted({*map(float, asked.flat)} - known.keys()))
     if len(missing):
         known.update(zip(map(float, missing), zip(*_bounds(hill, missing), strict=True), strict=True))
-    found = np.array([known[float(position)] for position in asked.flat], np.int64).reshape(-1, 2)
-    return found[:, 0].reshape(asked.shape), found[:, 1].reshape(asked.shape)
+    bounds = np.array([known[float(position)] for position in asked.flat], np.int64).reshape(-1, 2)
+    return bounds[:, 0].reshape(asked.shape), bounds[:, 1].reshape(asked.shape)
 
 
 @lru_cache(maxsize=16)
@@ -67,7 +62,7 @@ def _known(hill: Hill) -> dict[float, tuple[int, int]]:
     return {}
 
 
-def _bounds(hill: Hill, positions: Floats) -> tuple[Steps, Steps]:
+def _bounds(hill: Hill, positions: Floats) -> tuple[Integers, Integers]:
     car = Relaxed.of(hill)
     upper = np.full(len(positions), NEVER)
     _drive(hill, MomentumAgent.create(hill), positions, upper)
@@ -86,12 +81,12 @@ def _bounds(hill: Hill, positions: Floats) -> tuple[Steps, Steps]:
     return lower, upper
 
 
-def _drive(hill: Hill, agent: object, positions: Floats, found: Steps) -> None:
-    arguments = (hill, agent, positions, _PATIENCE, found)
+def _drive(hill: Hill, agent: object, positions: Floats, upper: Integers) -> None:
+    arguments = (hill, agent, positions, _PATIENCE, upper)
     compile_loop(drive, *arguments)(*arguments)
 
 
-def drive(hill: Hill, agent: MomentumAgent, positions: Floats, most: int, found: Steps) -> None:
+def drive(hill: Hill, agent: MomentumAgent, positions: Floats, most: int, upper: Integers) -> None:
     """The steps that an agent needs from rest at each position.
 
     Args:
@@ -99,23 +94,23 @@ def drive(hill: Hill, agent: MomentumAgent, positions: Floats, most: int, found:
         agent: who drives.
         positions: shape (starts,).
         most: where to give up.
-        found: lowered in place where it needs fewer, shape (starts,).
+        upper: lowered in place where it needs fewer, shape (starts,).
     """
     for start in range(positions.shape[0]):
         state = (positions[start], 0.0)
-        for step in range(1, min(most, found[start])):
+        for step in range(1, min(most, upper[start])):
             state, _, terminated = hill.step(state, agent.greedy(hill.observe(state)))
             if terminated:
-                found[start] = step
+                upper[start] = step
                 break
 
 
-def _shortened(hill: Hill, car: Relaxed, positions: Floats, found: Steps, *, coast: bool) -> Steps:
-    if len(found) == 0:
-        return found
+def _shortened(hill: Hill, car: Relaxed, positions: Floats, upper: Integers, *, coast: bool) -> Integers:
+    if len(upper) == 0:
+        return upper
     gaps = spacing(car, of_velocity=False)
-    horizons = np.minimum(found, affordable(gaps, int(found.max())))
-    found = found.copy()
-    arguments = (hill, positions, gaps, horizons, coast, found, np.zeros(MOST, np.int64))
+    horizons = np.minimum(upper, affordable(gaps, int(upper.max())))
+    upper = upper.copy()
+    arguments = (hill, positions, gaps, horizons, coast, upper, np.zeros(MAX_SWITCHES, np.int64))
     compile_loop(shorten, *arguments)(*arguments)
-    return found
+    return upper

@@ -15,8 +15,8 @@ Until a car touches the wall or its velocity is clipped, it is a relaxed car
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from agents.contract import Floats, Integers
 from agents.optimal.boxes import Boxes
 from agents.optimal.certificate import Limit, exclude
 from agents.optimal.conservative_cells import index
@@ -29,9 +29,6 @@ WORK = 10_000_000
 
 _BLOCKS = 128  # parts of the track whose starts are looked at together
 _PER_PATTERN = 8  # boxes, before no more are halved
-
-Steps = NDArray[np.int64]
-Floats = NDArray[np.float64]
 
 
 def affordable(spacing: Spacing, horizon: int) -> int:
@@ -46,7 +43,7 @@ def affordable(spacing: Spacing, horizon: int) -> int:
     return low
 
 
-def lower_bound(hill: Hill, positions: Floats, upper: Steps, cells: Steps) -> Steps:
+def lower_bound(hill: Hill, positions: Floats, upper: Integers, cells: Integers) -> Integers:
     """No drive from rest at ``positions`` reaches the goal in fewer steps.
 
     Args:
@@ -88,29 +85,29 @@ class _Proofs:
             (Limit(True, -1.0, -hill.min_velocity - slack, velocity), from_left),
         )
 
-    def horizon(self, most: Steps) -> Steps:
+    def horizon(self, most: Integers) -> Integers:
         """The most steps, up to ``most``, for which clips of the velocity can be excluded."""
         return np.minimum(most, affordable(self._clips[0][0].spacing, int(most.max())))
 
-    def exclude(self, segments: Floats, most: Steps, limit: Limit) -> Steps:
+    def exclude(self, segments: Floats, most: Integers, limit: Limit) -> Integers:
         """The first step at which a drive may be beyond ``limit``, at most ``most``."""
         if len(segments) == 0:
             return most
         horizon = affordable(limit.spacing, int(most.max()))
-        found = np.minimum(most, horizon)
+        lower = np.minimum(most, horizon)
         patience = int(_PER_PATTERN * patterns(limit.spacing, horizon)) + 1000
-        arguments = (self._car, segments, limit, patience, found, self._boxes)
+        arguments = (self._car, segments, limit, patience, lower, self._boxes)
         compile_loop(exclude, *arguments)(*arguments)
-        return found
+        return lower
 
-    def clipped(self, segments: Floats, most: Steps) -> Steps:
+    def clipped(self, segments: Floats, most: Integers) -> Integers:
         """A lower bound, at most ``most``, of the drives whose velocity is clipped."""
         for limit, rest in self._clips:
             first = self.exclude(segments, np.maximum(most - rest, 1), limit)
             most = np.minimum(most, first + rest)
         return most
 
-    def with_clips(self, segments: Floats, most: Steps, touched: int) -> Steps:
+    def with_clips(self, segments: Floats, most: Integers, touched: int) -> Integers:
         """A lower bound, at most ``most``, of the drives that touch the wall or whose velocity is clipped."""
         most = self.clipped(segments, most)
         wall = self.exclude(segments, np.maximum(most - touched, 1), self._wall)
@@ -141,7 +138,7 @@ def _segments(positions: Floats) -> Floats:
     return segments
 
 
-def _blocks(hill: Hill, positions: Floats) -> tuple[Floats, Steps]:
+def _blocks(hill: Hill, positions: Floats) -> tuple[Floats, Integers]:
     """Parts of the track that together hold all positions, and in which of them each is."""
     width = (hill.max_position - hill.min_position) / _BLOCKS
     numbers, where = np.unique(np.floor((positions - hill.min_position) / width), return_inverse=True)

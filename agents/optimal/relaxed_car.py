@@ -38,10 +38,10 @@ from typing import NamedTuple, Self
 
 from envs import Dynamics, Hill, Integrator
 
-FAR = 1_000_000
-"""A number of steps that stands for infinity."""
+NEVER = 1_000_000
+"""Steps from where the goal is not reached; as a lower bound, it is proved that it cannot be (in fewer)."""
 
-MOST = 12
+MAX_SWITCHES = 12
 """Switches that are looked at, at most."""
 
 _UNIT = 2.0**-53  # the relative error of a rounding
@@ -122,8 +122,8 @@ class Relaxed(NamedTuple):
             squares = 1.0 + turn * turn + back * back + self.keep * self.keep
             determinant = self.keep - turn * back
         else:
-            one, other = 1.0 + turn * back, turn * self.keep
-            squares = one * one + other * other + back * back + self.keep * self.keep
+            first, second = 1.0 + turn * back, turn * self.keep
+            squares = first * first + second * second + back * back + self.keep * self.keep
             determinant = self.keep
         root = math.sqrt(max(squares * squares - 4.0 * determinant * determinant, 0.0))
         return math.sqrt(0.5 * (squares + root)) * (1.0 + 1e-12)
@@ -158,19 +158,19 @@ def _same_sign(quotient: float, a: float, b: float) -> int:
     """The number of terms in a row that surely have the same sign, if the first two have that quotient."""
     discriminant = a * a - 4.0 * b
     if discriminant >= 0.0 and quotient >= 0.5 * (a - math.sqrt(discriminant)):
-        return FAR  # no oscillation: the quotient stays above a fixed point of r = a - b / r
+        return NEVER  # no oscillation: the quotient stays above a fixed point of r = a - b / r
     terms = 1
-    while quotient > _DOUBT and terms < FAR:
+    while quotient > _DOUBT and terms < NEVER:
         terms += 1
         quotient = a - b / quotient
     return terms
 
 
 def patterns(spacing: Spacing, horizon: int) -> float:
-    """How many ways there are to place switches in ``horizon`` steps; infinite if more than ``MOST`` fit."""
+    """Ways to place switches in ``horizon`` steps; infinite if more than ``MAX_SWITCHES`` fit."""
     total, switches = 1, 1
     while (free := horizon - spacing.last - (switches - 1) * spacing.gap) >= 0:
-        if switches > MOST:
+        if switches > MAX_SWITCHES:
             return math.inf
         total += math.comb(free + switches, switches)
         switches += 1

@@ -9,9 +9,9 @@ from agents.parameters.declared import (
     StepSize,
     parameters_of,
     settle_all,
-    validated,
 )
 from agents.parameters.inheritance import inherits
+from agents.parameters.validation import extends, validated
 
 __all__ = [
     "Count",
@@ -20,6 +20,7 @@ __all__ = [
     "Positive",
     "Probability",
     "StepSize",
+    "extends",
     "inherits",
     "parameters_of",
     "settle_all",

@@ -49,13 +49,26 @@ def rule(annotation: Any) -> str:
     if origin is Literal:
         return " or ".join(map(repr, arguments))
     if _is_sequence(origin) and not _is_named_tuple(origin):
-        kinds = dict.fromkeys(rule(one) for one in arguments if one is not Ellipsis)
+        kinds = dict.fromkeys(rule(kind) for kind in arguments if kind is not Ellipsis)
         return f"list of {', '.join(kinds)}" if kinds else "list"
     if base in (Any, None, NoneType):
         return "anything" if base is Any else "nothing"
     name = getattr(base, "__name__", str(base))
     known = [bound for bound in bounds if is_bound(bound) and base in NUMBERS]
     return f"{name} {in_words(known)}" if known else name
+
+
+def given_fields(value: Any) -> dict[str, Any]:
+    """The fields of a named tuple that are not at their defaults."""
+    defaults = value._field_defaults
+    fields = value._asdict().items()
+    return {key: part for key, part in fields if key not in defaults or defaults[key] is not part}
+
+
+def settle_fields(prefix: str, fields: Mapping[str, Any], kind: Any) -> dict[str, Any]:
+    """Fields of the class ``kind`` as it annotates them; messages call them ``prefix`` and their name."""
+    rules = type_hints(kind)
+    return {key: settle(prefix + key, part, rules.get(key, Any)) for key, part in fields.items()}
 
 
 def as_tuples(value: Any) -> Any:
@@ -155,11 +168,10 @@ def _settle_named_tuple(name: str, value: Any, kind: Any) -> Any:
         for field in inspect.signature(kind).parameters.values():
             if field.default is field.empty and field.name not in value:
                 raise InvalidTypeError(f"{name} must have the field {field.name}, got {value!r}")
-        return _construct(name, kind, _settle_fields(name, value, kind))
+        return _construct(name, kind, settle_fields(f"{name}.", value, kind))
     _settle_instance(name, value, kind)
-    defaults = value._field_defaults
-    given = {key: p for key, p in value._asdict().items() if key not in defaults or defaults[key] is not p}
-    settled = _settle_fields(name, given, type(value))
+    given = given_fields(value)
+    settled = settle_fields(f"{name}.", given, type(value))
     if all(settled[key] is part for key, part in given.items()):
         return value
     return _construct(name, value._replace, settled)
@@ -170,18 +182,14 @@ def _check_fields(name: str, value: Mapping[str, Any], fields: Collection[str]) 
         choice(f"field of {name}", key, fields)
 
 
-def _settle_fields(name: str, value: Mapping[str, Any], kind: Any) -> dict[str, Any]:
-    rules = type_hints(kind)
-    return {key: settle(f"{name}.{key}", part, rules.get(key, Any)) for key, part in value.items()}
-
-
 def _construct(name: str, make: Callable[..., Any], fields: Mapping[str, Any]) -> Any:
-    """``make(**fields)``; the rules that it has of its own are told with the whole name of the field."""
+    """``make(**fields)``; messages of the rules that it has of its own get the whole name of the field."""
     try:
         return make(**fields)
     except (TypeError, ValueError) as problem:
-        told = f"{name}.{problem}" if str(problem).partition(" ")[0] in fields else f"{name}: {problem}"
-        raise (InvalidTypeError if isinstance(problem, TypeError) else InvalidValueError)(told) from problem
+        kind = InvalidTypeError if isinstance(problem, TypeError) else InvalidValueError
+        separator = "." if str(problem).partition(" ")[0] in fields else ": "
+        raise kind(f"{name}{separator}{problem}") from problem
 
 
 def _parts(base: Any, bounds: list[Any]) -> tuple[Any, tuple[Any, ...]]:
@@ -190,5 +198,5 @@ def _parts(base: Any, bounds: list[Any]) -> tuple[Any, tuple[Any, ...]]:
     if base in (tuple, list, Sequence):
         return base, ()
     if origin in _UNIONS and bounds:
-        arguments = tuple(Annotated[one, *bounds] if split(one)[0] in NUMBERS else one for one in arguments)
+        arguments = tuple(Annotated[m, *bounds] if split(m)[0] in NUMBERS else m for m in arguments)
     return origin, arguments

@@ -12,9 +12,9 @@ _KINDS = (Ge, Gt, Le, Lt)
 NUMBERS = (int, float)
 
 
-def is_bound(one: Any) -> bool:
+def is_bound(metadata: Any) -> bool:
     """Whether it is a bound that is looked at."""
-    return isinstance(one, _KINDS)
+    return isinstance(metadata, _KINDS)
 
 
 def split(annotation: Any) -> tuple[Any, list[Any]]:
@@ -24,7 +24,7 @@ def split(annotation: Any) -> tuple[Any, list[Any]]:
         return annotation, []
     inner, *metadata = typing.get_args(annotation)
     base, bounds = split(inner)
-    return base, bounds + [one for one in _flat(metadata) if isinstance(one, BaseMetadata)]  # no notes
+    return base, bounds + [bound for bound in _flat(metadata) if isinstance(bound, BaseMetadata)]  # no notes
 
 
 def check_bounds(name: str, members: Sequence[Any], bounds: list[Any]) -> None:
@@ -33,10 +33,10 @@ def check_bounds(name: str, members: Sequence[Any], bounds: list[Any]) -> None:
     Raises:
         TypeError: when none of the types ``members`` is a number's, or a bound is of no known kind.
     """
-    numeric = any(split(one)[0] in NUMBERS for one in members)
+    numeric = any(split(member)[0] in NUMBERS for member in members)
     for bound in bounds:
         if not is_bound(bound) or not numeric:
-            known = ", ".join(one.__name__ for one in _KINDS)
+            known = ", ".join(kind.__name__ for kind in _KINDS)
             raise InvalidTypeError(f"{name} must be a number with bounds {known} or Interval, got {bound!r}")
 
 
@@ -70,8 +70,8 @@ def in_words(bounds: list[Any]) -> str:
 
 
 def _flat(metadata: Sequence[Any]) -> Iterator[Any]:
-    for one in metadata:
-        yield from one if isinstance(one, GroupedMetadata) else [one]
+    for part in metadata:
+        yield from part if isinstance(part, GroupedMetadata) else [part]
 
 
 def _short(bound: Any) -> str:

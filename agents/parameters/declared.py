@@ -5,12 +5,10 @@ with the vocabulary of the package annotated-types; the usual ones have names he
 """
 
 import dataclasses
-import functools
 import inspect
-import typing
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any
 
 from annotated_types import Ge, Gt, Interval
 
@@ -18,8 +16,6 @@ from agents.parameters.annotations import as_tuples, rule, settle
 from agents.parameters.hints import type_hints
 from envs.foundation.checks import choice
 from envs.foundation.errors import InvalidTypeError
-
-Create = TypeVar("Create", bound=Callable[..., Any])
 
 Probability = Annotated[float, Interval(ge=0, le=1)]
 NonNegative = Annotated[float, Ge(0)]
@@ -55,7 +51,7 @@ class Parameter:
     def settle(self, value: Any) -> Any:
         """``value`` as the agent receives it: a table of a file as a named tuple, a list as a tuple.
 
-        The default is always accepted, as it is when none is given: results files tell all parameters.
+        The default is always accepted, as it is when none is given: results files have all parameters.
 
         Raises:
             TypeError, ValueError: when it breaks the rule of the annotation.
@@ -73,17 +69,7 @@ def parameters_of(agent: Any) -> tuple[dict[str, Parameter], bool]:
     Args:
         agent: the class; one without ``create`` is constructed with its parameters.
     """
-    maker = getattr(agent, "create", agent)
-    declared = inspect.signature(maker).parameters.values()
-    hints = _hints(maker)
-    found = {
-        one.name: Parameter(one.name, hints.get(one.name, Any), one.default)
-        for one in declared
-        if one.name != "rng"
-        and one.kind not in (one.VAR_KEYWORD, one.VAR_POSITIONAL)
-        and (one.kind is one.KEYWORD_ONLY or maker is agent)
-    }
-    return found, any(one.kind is one.VAR_KEYWORD for one in declared)
+    return declared_by(getattr(agent, "create", agent))
 
 
 def settle_all(agent: Any, label: str, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -97,33 +83,38 @@ def settle_all(agent: Any, label: str, given: Mapping[str, Any]) -> dict[str, An
     Raises:
         TypeError, ValueError: when a parameter is unknown, is missing or breaks its rule.
     """
-    declared, free = parameters_of(agent)
+    return settle_arguments(getattr(agent, "create", agent), label, given)
+
+
+def declared_by(maker: Callable[..., Any]) -> tuple[dict[str, Parameter], bool]:
+    """The parameters of what makes an agent, a ``create`` or a class, and whether it takes others as well."""
+    arguments = inspect.signature(maker).parameters.values()
+    hints = _hints(maker)
+    declared = {
+        argument.name: Parameter(argument.name, hints.get(argument.name, Any), argument.default)
+        for argument in arguments
+        if argument.name != "rng"
+        and argument.kind not in (argument.VAR_KEYWORD, argument.VAR_POSITIONAL)
+        and (argument.kind is argument.KEYWORD_ONLY or isinstance(maker, type))
+    }
+    return declared, any(argument.kind is argument.VAR_KEYWORD for argument in arguments)
+
+
+def settle_arguments(maker: Callable[..., Any], label: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """As ``settle_all``, for what makes the agent."""
+    declared, free = declared_by(maker)
     for name in given:
         if not free:
             choice(f"parameter of {label}", name, declared)
-    for one in declared.values():
-        if one.required and one.name not in given:
-            raise InvalidTypeError(f"parameter {one.name} of {label} must be given")
+    for parameter in declared.values():
+        if parameter.required and parameter.name not in given:
+            raise InvalidTypeError(f"parameter {parameter.name} of {label} must be given")
     complete = {
-        name: one.settle(given[name]) if name in given else one.default
-        for name, one in declared.items()
-        if name in given or not one.made  # the class makes it, in the worker
+        name: parameter.settle(given[name]) if name in given else parameter.default
+        for name, parameter in declared.items()
+        if name in given or not parameter.made  # the class makes it, in the worker
     }
     return complete | {name: as_tuples(value) for name, value in given.items() if name not in declared}
-
-
-def validated(create: Create) -> Create:
-    """Decorator of ``create``: its parameters are settled before it is called.
-
-    The arena settles them anyway; so does whoever calls ``create`` in a notebook.
-    """
-
-    @functools.wraps(create)
-    def settled(cls: type[Any], task: Any, **given: Any) -> Any:
-        extra = {"rng": given.pop("rng")} if "rng" in given else {}
-        return create(cls, task, **settle_all(cls, cls.__name__, given), **extra)
-
-    return typing.cast("Create", settled)
 
 
 def _same(value: Any, default: Any) -> bool:
@@ -136,5 +127,10 @@ def _same(value: Any, default: Any) -> bool:
 
 
 def _hints(maker: Any) -> dict[str, Any]:
-    constructor = vars(maker).get("__init__", maker) if isinstance(maker, type) else maker
-    return type_hints(inspect.unwrap(getattr(constructor, "__func__", constructor)))
+    if isinstance(maker, type):
+        return type_hints(inspect.unwrap(vars(maker).get("__init__", maker)))
+    # A decorator may have made the signature, with annotations that its function does not have.
+    signed = inspect.signature(maker).parameters.items()
+    known = {name: p.annotation for name, p in signed if not isinstance(p.annotation, str)}
+    hints = known | type_hints(inspect.unwrap(getattr(maker, "__func__", maker)))
+    return {name: hint for name, hint in hints.items() if hint is not inspect.Parameter.empty}

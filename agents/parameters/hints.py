@@ -14,11 +14,11 @@ def type_hints(owner: Any) -> dict[str, Any]:
     ``typing.get_type_hints`` resolves all or none. A name that exists for type checkers only must not
     take the bounds of the others away.
     """
-    found: dict[str, Any] = {}
+    hints: dict[str, Any] = {}
     for part in reversed(getattr(owner, "__mro__", (owner,))):
         names = getattr(part, "__globals__", None) or vars(sys.modules.get(part.__module__, object))
         for name, annotation in inspect.get_annotations(part).items():
             alone = types.SimpleNamespace(__annotations__={name: annotation})
             with suppress(Exception):
-                found |= typing.get_type_hints(alone, dict(names), include_extras=True)
-    return found
+                hints |= typing.get_type_hints(alone, dict(names), include_extras=True)
+    return hints

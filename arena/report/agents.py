@@ -81,7 +81,10 @@ def _summary(agent: type[Any]) -> str:
 
 
 def _source(agent: type[Any]) -> str:
-    """What the module says of where the algorithm comes from."""
+    """The class's own ``citation``, else what its module says first: where the algorithm comes from."""
+    citation = vars(agent).get("citation")
+    if isinstance(citation, str):
+        return citation
     return (inspect.getdoc(sys.modules.get(agent.__module__)) or "").partition("\n")[0]
 
 

@@ -213,8 +213,8 @@ SPRING = {
     "end = 'x'": (LinearDecay, "gear.end must be a number, got 'x'"),
     "until = 0": (LinearDecay, "gear.until must be in (0, 1], got 0.0"),
     "A = 2; B = 1": (HarmonicRate, "gear.B must be a finite number of at least 2, got 1.0"),
-    "end = 0": (EITHER, "gear.end must be a finite number greater than 0, got 0.0"),
-    "c = -1": (EITHER, "gear.c must be a finite number of at least 0, got -1.0"),
+    "end = 0": (EITHER, "gear.end must be greater than 0, got 0.0"),
+    "c = -1": (EITHER, "gear.c must be at least 0, got -1.0"),
     "rst = 1": (
         Spring,
         "field of gear must be one of reach, rest, stiffness, turns, got 'rst'; did you mean 'rest'?",

@@ -282,7 +282,7 @@ def test_negligible_trace_is_dropped_and_no_other() -> None:
     assert agent.memory.length[0] == 2
     agent.learn(*step(1, 0, 0.0, 1, 0))
     assert agent.memory.length[0] == 1
-    assert agent.memory.places.tolist() == [-1, -1, -1, 0] + [-1] * 8
+    assert agent.memory.positions.tolist() == [-1, -1, -1, 0] + [-1] * 8
 
 
 # Against the book's boxes, written with vectors as long as the weights
@@ -457,9 +457,9 @@ def test_list_of_traces_is_consistent(
         for one in walk:
             agent.learn(*one)
             length = traces.length[0]
-            assert traces.places[traces.numbers[:length]].tolist() == list(range(length))
-            assert np.count_nonzero(traces.places >= 0) == length
-            assert np.all(np.abs(traces.sizes[:length]) >= NEGLIGIBLE)
+            assert traces.positions[traces.weights[:length]].tolist() == list(range(length))
+            assert np.count_nonzero(traces.positions >= 0) == length
+            assert np.all(np.abs(traces.values[:length]) >= NEGLIGIBLE)
 
 
 # In the arena

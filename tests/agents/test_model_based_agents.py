@@ -102,7 +102,7 @@ def test_curiosity_raises_rewards_of_what_was_not_tried_for_long() -> None:
 )
 def test_model_expects_the_mean_of_what_it_saw(steps: list[tuple[int, float, int]], discount: float) -> None:
     worth = np.sin(np.arange(SUCCESSORS))
-    model = CellModel.of_size(SUCCESSORS - 1, 2)
+    model = CellModel.empty(SUCCESSORS - 1, 2)
     for step in steps:
         model.observe(*step)
     for pair in {pair for pair, _, _ in steps}:
@@ -114,7 +114,7 @@ def test_model_expects_the_mean_of_what_it_saw(steps: list[tuple[int, float, int
 
 @pytest.mark.parametrize("seed", range(20))
 def test_model_that_is_full_forgets_the_rarest(seed: int) -> None:
-    rng, model = np.random.default_rng(seed), CellModel.of_size(15, 1)
+    rng, model = np.random.default_rng(seed), CellModel.empty(15, 1)
     counts: list[dict[int, int]] = [{}, {}, {}]  # by pair, in the order of their places
     forgotten = 0
     for _ in range(60):
@@ -144,7 +144,7 @@ def assert_chains_hold(model: CellModel, expected: set[tuple[int, int]]) -> None
             assert model.successors.ravel()[link] == cell
             assert model.counts.ravel()[link] > 0
             found.append((link // SUCCESSORS, cell))
-            link = model.following[link]
+            link = model.next_link[link]
     assert sorted(found) == sorted(expected)
 
 
@@ -159,7 +159,7 @@ def assert_chains_hold(model: CellModel, expected: set[tuple[int, int]]) -> None
     )
 )
 def test_queue_gives_the_greatest_first(orders: list[tuple[int, float] | None]) -> None:
-    queue, oracle = PriorityQueue.of_size(12), dict[int, float]()
+    queue, oracle = PriorityQueue.empty(12), dict[int, float]()
     for order in orders:
         if order is not None:
             queue.put(*order)
@@ -170,7 +170,7 @@ def test_queue_gives_the_greatest_first(orders: list[tuple[int, float] | None]) 
         assert queue.length[0] == len(oracle)
         assert set(queue.heap[: len(oracle)].tolist()) == oracle.keys()
         assert {n: queue.priorities[n] for n in range(12) if queue.priorities[n] > 0.0} == oracle
-        assert {n for n in range(12) if queue.places[n] >= 0} == oracle.keys()
+        assert {n for n in range(12) if queue.positions[n] >= 0} == oracle.keys()
     left = [oracle[queue.pop()] for _ in range(len(oracle))]
     assert left == sorted(oracle.values(), reverse=True)
 

@@ -15,7 +15,7 @@ from agents.optimal.boxes import Boxes
 from agents.optimal.certificate import Limit, Segment, first_beyond
 from agents.optimal.conservative_cells import cell_of, fewest_steps, image
 from agents.optimal.lower_bound import departure, lower_bound
-from agents.optimal.relaxed_car import MOST, Relaxed, Spacing, patterns, spacing
+from agents.optimal.relaxed_car import MAX_SWITCHES, Relaxed, Spacing, patterns, spacing
 from arena import Entrant
 from arena.execution.loops import EvaluationLoop, evaluate
 from arena.testing import parametrize_with_checks
@@ -100,20 +100,20 @@ def test_without_gravity_a_drive_has_no_switch() -> None:
 @given(st.integers(1, 5), st.integers(1, 6), st.integers(1, 12))
 @settings(max_examples=40, deadline=None)
 def test_all_patterns_are_written_and_counted(gap: int, last: int, horizon: int) -> None:
-    steps, expected = np.zeros(MOST, np.int64), set()
-    for switches in range(MOST + 1):
+    steps, expected = np.zeros(MAX_SWITCHES, np.int64), set()
+    for switches in range(MAX_SWITCHES + 1):
         for chosen in itertools.combinations(range(max(horizon - last + 1, 0)), switches):
             if all(b - a >= gap for a, b in itertools.pairwise(chosen)):
                 expected.add(chosen)
     written = []
-    for switches in range(MOST + 1):
+    for switches in range(MAX_SWITCHES + 1):
         more = first_pattern(steps, switches, gap, horizon - last)
         while more:
             written.append(tuple(map(int, steps[:switches])))
             more = next_pattern(steps, switches, gap, horizon - last)
     assert len(written) == len(set(written))
     assert set(written) == expected
-    if horizon - last < MOST:
+    if horizon - last < MAX_SWITCHES:
         assert patterns(Spacing(gap, last), horizon) == len(expected)
 
 
@@ -144,12 +144,12 @@ def test_no_drive_of_a_box_is_further_than_the_box(
     switches = int(rng.integers(min(n, 3)))
     steps = np.sort(rng.choice(n - 1, switches, replace=False))
     boxes.steps[:switches] = steps
-    boxes.halves[0] = rng.choice([0.0, 0.1, 0.5, 1.0], MOST + 1)
-    boxes.middles[0] = rng.uniform(-1.0, 1.0, MOST + 1) * (1.0 - boxes.halves[0])
+    boxes.halves[0] = rng.choice([0.0, 0.1, 0.5, 1.0], MAX_SWITCHES + 1)
+    boxes.middles[0] = rng.uniform(-1.0, 1.0, MAX_SWITCHES + 1) * (1.0 - boxes.halves[0])
     sides = rng.choice([0.0, 0.01, 0.1, 0.5], 2) * (1.0, hill.max_velocity)
     start = Segment(rng.uniform(-1.2, 0.5), 0.0, *sides)
     for _ in range(10):
-        corner = rng.choice([-1.0, 1.0, rng.uniform(-1.0, 1.0)], MOST + 1)
+        corner = rng.choice([-1.0, 1.0, rng.uniform(-1.0, 1.0)], MAX_SWITCHES + 1)
         inside = boxes.middles[0] + boxes.halves[0] * corner
         blocks = (-1.0) ** (switches - np.searchsorted(steps, np.arange(n), side="right"))
         thrusts = sign * blocks
@@ -327,7 +327,7 @@ def test_optimum_is_that_of_a_search_that_knows_no_theory() -> None:
 def test_search_finds_the_shortest_drives_by_itself() -> None:
     positions, found = np.array([-0.6, -0.5, -0.45, -0.4]), np.full(4, 107)
     distance = spacing(Relaxed.of(Hill()), of_velocity=False)
-    arguments = (Hill(), positions, distance, found.copy(), False, found, np.zeros(MOST, np.int64))
+    arguments = (Hill(), positions, distance, found.copy(), False, found, np.zeros(MAX_SWITCHES, np.int64))
     compile_loop(shorten, *arguments)(*arguments)
     assert found.tolist() == [104, 102, 91, 83]
 

@@ -18,7 +18,7 @@ from agents.algorithms.semi_gradient_sarsa import SemiGradientSarsa
 from agents.algorithms.tabular import Tabular
 from agents.algorithms.tutorial import TutorialQLearning
 from agents.baselines import XiaoAgent
-from agents.parameters import inherits, parameters_of
+from agents.parameters import parameters_of
 from envs import Hill
 
 RULES: list[dict[str, Any]] = [
@@ -296,18 +296,6 @@ def test_inherited_parameters_are_declared_after_its_own(cls: type[Any], own: li
     assert list(declared) == [*own, *parents]
     assert not free
     assert all(declared[name].rule() == parents[name].rule() for name in parents)
-
-
-def test_inherited_defaults_can_be_others_but_not_others_than_inherited() -> None:
-    def parent(task: Any, *, one: int = 1, two: int = 2, rng: Any = None) -> None: ...
-
-    @inherits(parent, two=5)
-    def child(task: Any, *, three: int = 3, rng: Any = None, **inherited: Any) -> None: ...
-
-    defaults = {name: one.default for name, one in parameters_of(type("C", (), {"create": child}))[0].items()}
-    assert defaults == {"three": 3, "one": 1, "two": 5}
-    with pytest.raises(TypeError, match=r"^defaults must be those of inherited parameters, got \['four'\]$"):
-        inherits(parent, four=4)(child)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from agents.algorithms.value_iteration import GridPlanner, total_steps
+from agents.algorithms.value_iteration import ValueIteration, total_steps
 from agents.discretization import EdgeGrid, Voronoi
 from agents.optimal import optimal_steps
 from arena import Entrant
@@ -26,14 +26,14 @@ def lengths(agent: Any) -> NDArray[np.int64]:
     return steps
 
 
-@parametrize_with_checks([Entrant("value iteration", GridPlanner, bins=(6, 7), polish=2)])
+@parametrize_with_checks([Entrant("value iteration", ValueIteration, bins=(6, 7), polish=2)])
 def test_contract(entrant: Any, check: Any) -> None:
     check(entrant)
 
 
 @pytest.mark.parametrize("discount", [1.0, 0.9])
 def test_values_solve_bellmans_equation_of_the_digitized_model(discount: float) -> None:
-    agent = GridPlanner.create(Hill(), bins=(5, 4), samples=10_000, discount=discount)
+    agent = ValueIteration.create(Hill(), bins=(5, 4), samples=10_000, discount=discount)
     # The same again, from a lattice of points, and solved by linear algebra.
     middles = (np.arange(1000) + 0.5) / 1000
     x, v = (part.ravel() for part in np.meshgrid(-1.2 + 1.7 * middles, -0.07 + 0.14 * middles))
@@ -60,7 +60,7 @@ def cell(x: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def test_greedy_takes_the_action_of_the_cell() -> None:
-    agent = GridPlanner.create(Hill(), bins=(3, 2))
+    agent = ValueIteration.create(Hill(), bins=(3, 2))
     agent.policy[:] = [0, 1, 2, 2, 1, 0]
     places = [(x, v) for x in (-1.0, -0.3, 0.4) for v in (-0.01, 0.01)]
     assert [agent.greedy(place) for place in places] == [0, 1, 2, 2, 1, 0]
@@ -69,15 +69,15 @@ def test_greedy_takes_the_action_of_the_cell() -> None:
 
 def test_finer_grids_lose_less_and_none_beats_the_optimum() -> None:
     _, optimum = optimal_steps(Hill(), STARTS)
-    losses = [lengths(GridPlanner.create(Hill(), bins=bins)) - optimum for bins in (10, 40, 80)]
+    losses = [lengths(ValueIteration.create(Hill(), bins=bins)) - optimum for bins in (10, 40, 80)]
     assert all(loss.min() >= 0 for loss in losses)
     means = [loss.mean() for loss in losses]
     assert means[0] > 10.0 > means[1] > 2.0 > means[2]
 
 
 def test_polish_shortens_drives_that_it_has_not_seen() -> None:
-    plain = GridPlanner.create(Hill(), bins=20)
-    polished = GridPlanner.create(Hill(), bins=20, polish=20, rng=np.random.default_rng(3))
+    plain = ValueIteration.create(Hill(), bins=20)
+    polished = ValueIteration.create(Hill(), bins=20, polish=20, rng=np.random.default_rng(3))
     assert polished.values.tolist() == plain.values.tolist()
     _, optimum = optimal_steps(Hill(), STARTS)
     assert lengths(polished).mean() < lengths(plain).mean() - 2.0
@@ -86,7 +86,7 @@ def test_polish_shortens_drives_that_it_has_not_seen() -> None:
 
 def test_polish_leaves_nothing_that_the_change_of_a_single_cell_improves() -> None:
     hill, rng = Hill(), np.random.default_rng(4)
-    agent = GridPlanner.create(hill, bins=6, polish=100, rng=np.random.default_rng(4))
+    agent = ValueIteration.create(hill, bins=6, polish=100, rng=np.random.default_rng(4))
     starts = np.array([hill.reset(rng) for _ in range(100)])  # those that it was polished with
     policy, passed = agent.policy.copy(), np.zeros(36, np.int64)
     arguments = (hill, agent.cells, starts, policy, passed)
@@ -102,7 +102,7 @@ def test_polish_leaves_nothing_that_the_change_of_a_single_cell_improves() -> No
 
 def test_polish_and_cells_depend_on_the_generator_alone() -> None:
     made = [
-        GridPlanner.create(Hill(), bins=8, binning="quantile", polish=1, rng=np.random.default_rng(seed))
+        ValueIteration.create(Hill(), bins=8, binning="quantile", polish=1, rng=np.random.default_rng(seed))
         for seed in (5, 5, 6)
     ]
     assert made[0].policy.tolist() == made[1].policy.tolist()
@@ -111,7 +111,7 @@ def test_polish_and_cells_depend_on_the_generator_alone() -> None:
 
 @pytest.mark.parametrize(("binning", "kind"), [("quantile", EdgeGrid), ("kmeans", Voronoi)])
 def test_other_cells_are_planned_for(binning: Any, kind: type[Any]) -> None:
-    agent = GridPlanner.create(Hill(), bins=20, binning=binning, rng=np.random.default_rng(7))
+    agent = ValueIteration.create(Hill(), bins=20, binning=binning, rng=np.random.default_rng(7))
     assert isinstance(agent.cells, kind)
     assert lengths(agent).mean() < 130.0
 
@@ -121,7 +121,7 @@ def test_cell_without_points_is_avoided() -> None:
         (-1.2, -0.5, -0.5 + 1e-9, 0.6),
         (-0.07, 0.0, 0.07),
     )  # none of the points is between -0.5 and -0.5
-    agent = GridPlanner.create(Hill(), bins=edges)
+    agent = ValueIteration.create(Hill(), bins=edges)
     assert np.all(agent.values[2:4] == 0.0)  # not computed
     assert np.all(agent.values[[0, 1, 4, 5]] > -1e4)  # and not counted on by the others
     assert np.all(agent.values[[0, 1, 4, 5]] < -1.0)
@@ -133,4 +133,4 @@ def test_cell_without_points_is_avoided() -> None:
 )
 def test_bad_parameter_is_refused_by_name(parameter: str, bad: Any) -> None:
     with pytest.raises((TypeError, ValueError), match=f"^{parameter} must "):
-        GridPlanner.create(Hill(), **{parameter: bad})
+        ValueIteration.create(Hill(), **{parameter: bad})

@@ -38,7 +38,9 @@ class PolicyAgent(DoesNotLearn):
     @staticmethod
     def of(policy: Callable[..., Any]) -> type["PolicyAgent"]:
         """The class of agents that drive as ``policy`` says; raises what a class of one's own would."""
-        return type("PolicyAgent", (PolicyAgent,), {"policy": staticmethod(policy)})
+        # Results files know the class by the module that it had in version 0.1.
+        namespace = {"__module__": "arena.policy_agent", "policy": staticmethod(policy)}
+        return type("PolicyAgent", (PolicyAgent,), namespace)
 
     def __init_subclass__(cls) -> None:
         if "policy" not in vars(cls):  # a copy in a worker receives it, and ``create``, later

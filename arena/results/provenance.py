@@ -8,6 +8,7 @@ from importlib import metadata
 from typing import Any
 
 from agents import agent_name
+from agents.interop.policy_agent import PolicyAgent
 from arena.plugins.loading import source_of
 
 
@@ -29,8 +30,13 @@ def source_digests(agents: Iterable[type[Any]]) -> dict[str, str]:
     for agent in agents:
         plugins = source_of(agent)
         try:
-            code = "".join(plugin.text for plugin in plugins) or inspect.getsource(agent)
+            code = "".join(plugin.text for plugin in plugins) or inspect.getsource(_written(agent))
         except (OSError, TypeError):  # typed in at a prompt
             code = ""
         found[agent_name(agent)] = hashlib.sha256(code.encode()).hexdigest() if code else ""
     return found
+
+
+def _written(agent: type[Any]) -> type[Any]:
+    """The class whose text there is: ``PolicyAgent`` for the classes that ``PolicyAgent.of`` makes."""
+    return PolicyAgent if agent.__bases__ == (PolicyAgent,) and agent.__name__ == "PolicyAgent" else agent

@@ -19,6 +19,7 @@ from filelock import FileLock
 from arena.common.locks import LockedError, lock_file, unlock
 from arena.common.npz import Arrays, unpack
 from arena.results.continuation import as_read, continued, difference
+from arena.results.equivalence import are_equivalent
 from arena.results.provenance import versions
 from arena.results.schema import COLUMNS, is_valid_config, row_problem
 from arena.tournament.outcome import Outcome
@@ -154,7 +155,7 @@ class Store:
                 f"{self.path} holds another tournament ({differs}); name another file or remove this one"
             )
         for agent, digest in self.sources.items():
-            if sources.get(agent, digest) != digest:
+            if not are_equivalent(agent, digest, sources.get(agent, digest)):
                 raise ResultsError(
                     f"{self.path} holds runs of other code of {agent!r}; name another file or remove this one"
                 )

@@ -41,9 +41,9 @@ class Fleet:
         self._observations, self._rewards = np.empty((cars, 2)), np.empty(cars)
         self._terminated = np.empty(cars, np.bool_)
         self._next: Callable[[], int] | None = None
-        self.drive(range(cars))
+        self.select(range(cars))
 
-    def drive(self, cars: Sequence[int] | Integers) -> None:
+    def select(self, cars: Sequence[int] | Integers) -> None:
         """Let these cars drive from now on, and no others."""
         count = self._count[0] = len(cars)
         self._numbers[:count] = cars
@@ -67,7 +67,7 @@ class Fleet:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self.drive(self.driving)  # views of the arrays of the copy
+        self.select(self.driving)  # views of the arrays of the copy
 
     def _loop(self) -> Callable[[], int]:
         results = (self._observations, self._rewards, self._terminated)

@@ -117,22 +117,22 @@ class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
         if not isinstance(inelastic_wall, (bool, np.bool_)):
             raise InvalidTypeError(f"inelastic_wall must be true or false, got {inelastic_wall!r}")
         low = number("min_position", min_position)
-        high = number("max_position", max_position, low, above=True)
-        goal = number("goal_position", goal_position, low, high, above=True)
+        high = number("max_position", max_position, low, exclusive_low=True)
+        goal = number("goal_position", goal_position, low, high, exclusive_low=True)
         start = number("min_start", min_start, low, goal)
         return super().__new__(
             cls,
-            number("omega", omega, 0.0, above=True),
-            number("mass", mass, 0.0, above=True),
+            number("omega", omega, 0.0, exclusive_low=True),
+            number("mass", mass, 0.0, exclusive_low=True),
             number("gravity", gravity, 0.0),
             number("friction", friction, 0.0),
-            number("time_step", time_step, 0.0, above=True),
+            number("time_step", time_step, 0.0, exclusive_low=True),
             number("thrust", thrust, 0.0),
             goal,
             low,
             high,
             number("min_velocity", min_velocity, high=0.0),
-            number("max_velocity", max_velocity, low=0.0, above=True),
+            number("max_velocity", max_velocity, low=0.0, exclusive_low=True),
             start,
             number("max_start", max_start, start, goal),
             bool(inelastic_wall),

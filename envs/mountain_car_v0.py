@@ -130,8 +130,8 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int], EzPickle):  # t
         together = self.hill.reset(self._streams[""]) if self.same_start else None
         starts = [given.get(car, together) or self.hill.reset(self._streams[car]) for car in self.agents]
         self._fleet.states[:] = starts
-        self._fleet.drive(range(len(starts)))
-        self.follow()
+        self._fleet.select(range(len(starts)))
+        self._update_window()
         observations = {
             car: np.array(self.hill.observe(start)) for car, start in zip(self.agents, starts, strict=True)
         }
@@ -171,10 +171,10 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int], EzPickle):  # t
             truncations = {car: late and not terminations[car] for car in cars}
             goes_on = ~fleet.terminated & (not late)
             self.agents = list(compress(cars, goes_on))
-            fleet.drive(fleet.driving[goes_on])
+            fleet.select(fleet.driving[goes_on])
         else:
             terminations, truncations = dict.fromkeys(cars, False), dict.fromkeys(cars, False)
-        self.follow()
+        self._update_window()
         return observations, rewards, terminations, truncations, infos
 
     def state(self) -> Observation:
@@ -189,7 +189,7 @@ class parallel_env(Rendered, ParallelEnv[str, Observation, int], EzPickle):  # t
             raise InvalidValueError("state is there after the first reset, not before")
         return self._fleet.states.ravel().copy()
 
-    def shown(self) -> tuple[dict[str, State], int]:
+    def _rendered_state(self) -> tuple[dict[str, State], int]:
         """The cars that there are after a reset, the ended ones included."""
         states = [(position, velocity) for position, velocity in self._fleet.states.tolist()]
         return dict(zip(self.possible_agents, states if self._streams else [])), self._steps

@@ -47,7 +47,7 @@ class Parked(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
 
     def step(self, actions: dict[str, Any]) -> tuple[dict[str, Any], ...]:
         """Step those that go on; answers for all."""
-        told = list(self.agents)
+        shown = list(self.agents)
         driving = {car: actions[car] for car in self.env.agents if car in actions}  # it tells who is missing
         observations, rewards, terminated, truncated, infos = self.env.step(driving)
         self._seen |= observations
@@ -59,10 +59,10 @@ class Parked(BaseParallelWrapper):  # type: ignore[misc]  # the base is untyped
         flags = self._terminated, self._truncated
         if self.flags == "together":
             late = any(self._truncated.values())
-            flags = dict.fromkeys(told, over and not late), dict.fromkeys(told, over and late)
+            flags = dict.fromkeys(shown, over and not late), dict.fromkeys(shown, over and late)
         return (
-            {car: self._seen[car].copy() for car in told},
-            {car: rewards.get(car, 0.0) for car in told},
-            *({car: flag[car] for car in told} for flag in flags),
-            {car: infos.get(car, {}) for car in told},
+            {car: self._seen[car].copy() for car in shown},
+            {car: rewards.get(car, 0.0) for car in shown},
+            *({car: flag[car] for car in shown} for flag in flags),
+            {car: infos.get(car, {}) for car in shown},
         )

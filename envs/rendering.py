@@ -181,7 +181,7 @@ class Rendered:
     render_mode: str | None
     _window: Window | None = None
 
-    def shown(self) -> tuple[dict[str, State], int]:
+    def _rendered_state(self) -> tuple[dict[str, State], int]:
         """The cars by name, and their steps."""
         raise NotImplementedError
 
@@ -192,7 +192,7 @@ class Rendered:
 
             logger.warn("render is called without a render_mode; give one when the environment is made")
             return None
-        cars, steps = self.shown()
+        cars, steps = self._rendered_state()
         if self.render_mode == "ansi":
             return text(cars, steps)
         image = picture(self.hill, cars, steps)
@@ -202,7 +202,7 @@ class Rendered:
         self._window.show(image)
         return None
 
-    def follow(self) -> None:
+    def _update_window(self) -> None:
         """Keep the window up to date, if that is the render mode."""
         if self.render_mode == "human":
             self.render()

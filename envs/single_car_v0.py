@@ -74,7 +74,7 @@ class SingleCarEnv(Rendered, gymnasium.Env[Observation, np.int64]):
         super().reset(seed=seed)
         self._state = start_state(self.hill, self.np_random, options)
         self._steps = 0
-        self.follow()
+        self._update_window()
         return np.array(self._state, np.float32), {}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -90,9 +90,9 @@ class SingleCarEnv(Rendered, gymnasium.Env[Observation, np.int64]):
             raise InvalidValueError(f"action must be less than {self.hill.n_actions}, got {action}")
         self._state, reward, terminated = self.hill.step(self._state, chosen)
         self._steps += 1
-        self.follow()
+        self._update_window()
         return np.array(self._state, np.float32), reward, terminated, False, {}
 
-    def shown(self) -> tuple[dict[str, State], int]:
+    def _rendered_state(self) -> tuple[dict[str, State], int]:
         """The car, if there was a reset."""
         return ({} if self._state is None else {"car": self._state}), self._steps

@@ -148,7 +148,7 @@ class VectorCarEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
         """One step of all but those that start anew: rewards and whether they are at the goal."""
         fleet, some = self._fleet, anew.any()
         if some or len(fleet.driving) < self.num_envs:
-            fleet.drive(np.flatnonzero(~anew))
+            fleet.select(np.flatnonzero(~anew))
         fleet.actions[:] = actions[~anew] if some else actions
         fleet.step()
         if not some:

@@ -50,7 +50,7 @@ class Grid(_Parts):
             raise InvalidValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
         counts = _counts(bins, len(lows))
         for a, b in zip(lows, highs, strict=True):
-            number("high", b, a, above=True)
+            number("high", b, a, exclusive_low=True)
         edges = np.full((len(counts), max(counts) + 1), np.nan)
         for d, (a, b, n) in enumerate(zip(lows, highs, counts, strict=True)):
             edges[d, :n] = _edges(a, b, n)

@@ -51,7 +51,7 @@ class TileCoding(_Parts):
         if len(lows) != len(highs) or not lows:
             raise InvalidValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
         for a, b in zip(lows, highs, strict=True):
-            number("high", b, a, above=True)
+            number("high", b, a, exclusive_low=True)
             number("high - low", b - a)
         given = tiles if isinstance(tiles, Iterable) else [tiles] * len(lows)
         counts = tuple(integer("tiles", n, 1) for n in given)

@@ -20,7 +20,7 @@ from envs.foundation.errors import InvalidValueError
 
 
 @dataclass(frozen=True)
-class Duel:
+class Comparison:
     """Two entrants of a tournament.
 
     Attributes:
@@ -57,7 +57,7 @@ def compare_entrants(
     b: str,
     by: str = "steps",
     confidence: float = 0.95,
-) -> Duel:
+) -> Comparison:
     """Compare two entrants, chosen before the results were seen: nothing is corrected for others.
 
     Raises:
@@ -75,7 +75,7 @@ def compare_entrants(
     i, j = scores.entrants.index(a), scores.entrants.index(b)
     first, second = scores.values[by][i], scores.values[by][j]
     p_value = paired_permutation_test(costs[i], costs[j])
-    return Duel(
+    return Comparison(
         by,
         confidence,
         len(scores.replicates),
@@ -100,7 +100,7 @@ def _verdict(a: str, b: str, difference: float, p_value: float, confidence: floa
 
 
 @dataclass(frozen=True)
-class Change:
+class Regression:
     """What became of an entrant since the baseline.
 
     Attributes:
@@ -132,7 +132,7 @@ def regressions(
     confidence: float = 0.95,
     *,
     relative: bool = False,
-) -> tuple[Change, ...]:
+) -> tuple[Regression, ...]:
     """What became of the entrants that both have, in the order of ``new``.
 
     The replicates that both have are paired by their numbers. With the same seed they are tested from the
@@ -168,7 +168,7 @@ def regressions(
     worse = sign * (now - then)
     p_values = holm(sign_flip_test(worse - (allowed * then if relative else allowed), one_sided=True))
     return tuple(
-        Change(
+        Regression(
             name,
             float(then[i].mean()),
             float(now[i].mean()),

@@ -24,7 +24,7 @@ MAX_CELLS = 10_000  # more of its own are not told apart in a picture
 
 
 @dataclass(frozen=True)
-class Map:
+class PolicyMap:
     """A grid over positions and velocities.
 
     Attributes:
@@ -43,14 +43,14 @@ class Map:
         return [[(float(a), float(b)) for b in v] for a in x]
 
 
-def map_of(trained: Trained) -> Map:
+def map_of(trained: Trained) -> PolicyMap:
     """The agent's own cells if they are a grid, else a fine one."""
     hill, cells = trained.hill, getattr(trained.agent, "cells", None)
     exact = isinstance(cells, (Grid, EdgeGrid)) and cells.size <= MAX_CELLS
     if isinstance(cells, EdgeGrid) and exact:
-        return Map(_inside(cells, hill, 0), _inside(cells, hill, 1), exact)
+        return PolicyMap(_inside(cells, hill, 0), _inside(cells, hill, 1), exact)
     bins = cells.bins if isinstance(cells, Grid) and exact else FINE
-    return Map(_even(hill, 0, bins), _even(hill, 1, bins), exact)
+    return PolicyMap(_even(hill, 0, bins), _even(hill, 1, bins), exact)
 
 
 def _even(hill: Hill, d: int, bins: tuple[int, ...]) -> Floats:
@@ -63,7 +63,7 @@ def _inside(cells: EdgeGrid, hill: Hill, d: int) -> Floats:
     return np.array([low, *inner[(low < inner) & (inner < high)], high])
 
 
-def policy(trained: Trained, where: Map) -> NDArray[np.int64]:
+def policy(trained: Trained, where: PolicyMap) -> NDArray[np.int64]:
     """The action of the learned policy in each cell, shape (m, n).
 
     Raises:
@@ -77,7 +77,7 @@ def policy(trained: Trained, where: Map) -> NDArray[np.int64]:
     return found
 
 
-def visits(trained: Trained, where: Map) -> NDArray[np.int64] | None:
+def visits(trained: Trained, where: PolicyMap) -> NDArray[np.int64] | None:
     """How often each action was taken in each cell while it learned, shape (m, n, actions).
 
     None if the agent does not count them by the cells of the map.
@@ -88,7 +88,7 @@ def visits(trained: Trained, where: Map) -> NDArray[np.int64] | None:
     return np.array([[counts[trained.agent.cells.encode(o)] for o in row] for row in where.middles])
 
 
-def values(trained: Trained, where: Map) -> Floats | None:
+def values(trained: Trained, where: PolicyMap) -> Floats | None:
     """The value of the best action in each cell, shape (m, n): minus the steps to go, discounted.
 
     None if the agent has no values: of its cells in ``values``, or of its features in ``weights``.

@@ -20,7 +20,7 @@ import numpy as np
 from arena.common.npz import pack, unpack
 from arena.common.plain import plain
 from arena.tournament.conditions import Conditions, Run
-from envs.compilation.reachable import Reached
+from envs.compilation.reachable import ReachableCode
 
 
 class UnsavableError(TypeError):
@@ -45,12 +45,12 @@ class Checkpoint:
         """Keep the state after ``done`` episodes; an earlier one is replaced as a whole."""
         if self.path is None:
             return
-        told = {"key": self.key, "done": done, "generators": list(map(_generator, self.parts))}
-        text = np.frombuffer(json.dumps(told).encode(), np.uint8)
+        metadata = {"key": self.key, "done": done, "generators": list(map(_generator, self.parts))}
+        text = np.frombuffer(json.dumps(metadata).encode(), np.uint8)
         arrays = {str(n): part for n, part in enumerate(self.parts) if isinstance(part, np.ndarray)}
         self.path.parent.mkdir(parents=True, exist_ok=True)
         draft = self.path.with_suffix(f".{os.getpid()}")
-        draft.write_bytes(pack({"told": text, **arrays}))
+        draft.write_bytes(pack({"metadata": text, **arrays}))
         draft.replace(self.path)
 
     def restore(self) -> int:
@@ -59,17 +59,17 @@ class Checkpoint:
             return 0
         try:
             arrays = unpack(self.path.read_bytes())
-            told = json.loads(arrays.pop("told").tobytes())
+            metadata = json.loads(arrays.pop("metadata").tobytes())
         except Exception:  # missing, or damaged in any of many ways: begin anew
             return 0
-        if told["key"] != self.key:
+        if metadata["key"] != self.key:
             return 0
-        for number, (part, generator) in enumerate(zip(self.parts, told["generators"], strict=True)):
+        for number, (part, generator) in enumerate(zip(self.parts, metadata["generators"], strict=True)):
             if generator is None:
                 part[...] = arrays[str(number)]
             else:
                 part.bit_generator.state = generator
-        return int(told["done"])
+        return int(metadata["done"])
 
 
 def checkpoint_of(conditions: Conditions, run: Run, agent: Any, *more: Any) -> Checkpoint:
@@ -81,7 +81,7 @@ def checkpoint_of(conditions: Conditions, run: Run, agent: Any, *more: Any) -> C
     except UnsavableError:
         return Checkpoint(None, "", ())
     what = [run.identity, plain(conditions.hill), plain(vars(conditions.training)), conditions.seed]
-    what += [run.entrant.to_dict(), Reached(agent, conditions.hill).fingerprint()]
+    what += [run.entrant.to_dict(), ReachableCode(agent, conditions.hill).fingerprint()]
     key = hashlib.sha256(json.dumps(what).encode()).hexdigest()
     return Checkpoint(file_of(conditions, run), key, parts)
 

@@ -15,7 +15,7 @@ from arena.execution.loops import TrainingLoop, evaluate, evaluation_loop, train
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome
 from envs.compilation.kernels import compile_loop
-from envs.compilation.reachable import Reached
+from envs.compilation.reachable import ReachableCode
 
 NAME = "compiled"
 _PIECE = 1000  # episodes at first between two looks at the clock
@@ -48,8 +48,8 @@ def prepare(conditions: Conditions, run: Run, agent: Any) -> None:
 def fingerprint(conditions: Conditions, run: Run, agent: Any) -> str:
     """The same for two runs if the same machine code drives both."""
     loops = (
-        Reached(train, training_loop(conditions, run, agent), 0, 0),
-        Reached(evaluate, evaluation_loop(conditions, run, agent)),
+        ReachableCode(train, training_loop(conditions, run, agent), 0, 0),
+        ReachableCode(evaluate, evaluation_loop(conditions, run, agent)),
     )
     return " ".join(reached.fingerprint() for reached in loops)
 

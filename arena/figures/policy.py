@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arena.analysis.policy_map import Map, map_of, policy, values, visits
+from arena.analysis.policy_map import PolicyMap, map_of, policy, values, visits
 from arena.figures.style import ACTION_NAMES, ACTIONS, AMOUNT, BLACK, DASHES, LINES, UNVISITED, make_axes
 from arena.results.trained import Trained, UnknownPolicyError
 
@@ -120,7 +120,7 @@ def draw_value(trained: Trained, figure: "Figure | None" = None) -> "Figure":
     return figure
 
 
-def expected_costs(trained: Trained, where: Map) -> "np.ma.MaskedArray[Any, Any]":
+def expected_costs(trained: Trained, where: PolicyMap) -> "np.ma.MaskedArray[Any, Any]":
     """Minus the value of the best action in each cell, shape (m, n); masked where training never was.
 
     Raises:
@@ -163,11 +163,11 @@ def draw_phase(trained: Trained, axes: "Axes | None" = None, starts: Sequence[fl
     return axes
 
 
-def _corners(where: Map) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _corners(where: PolicyMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return where.positions, where.velocities
 
 
-def _hatch(axes: "Axes", where: Map, cells: NDArray[np.bool_]) -> Any:
+def _hatch(axes: "Axes", where: PolicyMap, cells: NDArray[np.bool_]) -> Any:
     """Mark these cells; what stands for them in a legend."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
@@ -177,10 +177,10 @@ def _hatch(axes: "Axes", where: Map, cells: NDArray[np.bool_]) -> Any:
     return Patch(facecolor=UNVISITED, hatch="////", edgecolor="#777777", label="never visited")
 
 
-def _label(axes: "Axes", trained: Trained, what: str, where: Map) -> None:
+def _label(axes: "Axes", trained: Trained, what: str, where: PolicyMap) -> None:
     axes.set(xlabel=_POSITION, ylabel=_VELOCITY, title=_title(trained, what, where))
 
 
-def _title(trained: Trained, what: str, where: Map) -> str:
+def _title(trained: Trained, what: str, where: PolicyMap) -> str:
     asked = "" if where.exact else " (asked on a fine grid)"
     return f"{trained.entrant}, replicate {trained.replicate}: {what}{asked}"

@@ -83,7 +83,7 @@ def save_figure(study: WalkStudy, path: Path) -> None:
     left, right = figure.subplots(1, 2)
     draw_hill(left, study.walks[0].hill)
     draw_lengths(right, study.walks[0].lengths, study.fits)
-    if study.is_the_paper_s:
+    if study.on_the_papers_hill:
         right.axvline(PAPER.mean, color=BLACK, linewidth=1, linestyle=":", label="mean, the paper's")
         right.legend(frameon=False)
     figure.savefig(path, dpi=150)

@@ -16,7 +16,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from arena.plugins.source_modules import own_modules
-from envs.compilation.reachable import Reached, module_code
+from envs.compilation.reachable import ReachableCode, module_code
 
 _LOADED = ""  # the key of what this process runs of the class itself; the others are names of modules
 _codes: WeakKeyDictionary[type[Any], tuple[dict[str, Any], dict[str, str]]] = WeakKeyDictionary()
@@ -88,7 +88,7 @@ def _travels(cls: type[Any]) -> bool:
 def _loaded_code(agent: type[Any]) -> str:
     """A digest of the functions of the class's module, and of all that is compiled with it."""
     if agent not in _loaded:
-        compiled = Reached(agent).fingerprint() if hasattr(agent, "_fields") else ""
+        compiled = ReachableCode(agent).fingerprint() if hasattr(agent, "_fields") else ""
         _loaded[agent] = module_code(sys.modules[agent.__module__]) + compiled
     return _loaded[agent]
 

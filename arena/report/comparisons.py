@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 from rich.text import Text
 
-from arena.analysis.pairwise import Change, Duel
+from arena.analysis.pairwise import Comparison, Regression
 from arena.analysis.scores import SCORES
 
 
-def comparison_text(comparison: Duel) -> Text:
+def comparison_text(comparison: Comparison) -> Text:
     """Return two entrants side by side: an estimate a line, with its interval, then the test."""
     a, b, score = comparison.a, comparison.b, SCORES[comparison.by]
     rows = [
@@ -29,7 +29,7 @@ def comparison_text(comparison: Duel) -> Text:
 
 
 def changes_text(
-    changes: Sequence[Change], by: str, only_new: Sequence[str], only_old: Sequence[str]
+    changes: Sequence[Regression], by: str, only_new: Sequence[str], only_old: Sequence[str]
 ) -> Text:
     """Return a line for each entrant of two files, and who is in one of them only."""
     digits = SCORES[by].decimals

@@ -32,7 +32,7 @@ def _table(first: str, *others: str) -> Table:
 def _summaries(study: WalkStudy) -> Table:
     headings = [walk.hill.integrator.label for walk in study.walks]
     columns = [list(_rows(summary)) for summary in study.summaries]
-    if study.is_the_paper_s:
+    if study.on_the_papers_hill:
         headings.append("paper")
         columns.append(list(_rows(PAPER)))
     table = _table("", *headings)

@@ -48,7 +48,7 @@ class WalkStudy:
     fits: tuple[Fit, ...]
 
     @property
-    def is_the_paper_s(self) -> bool:
+    def on_the_papers_hill(self) -> bool:
         """Whether it is the paper's hill, whatever the integrator."""
         return self.walks[0].hill._replace(integrator=Integrator.SEMI_IMPLICIT) == Hill()
 
@@ -56,7 +56,7 @@ class WalkStudy:
     def verdicts(self) -> list[str]:
         """What follows, a sentence or two each."""
         found = [_given_up(walk, one) for walk, one in zip(self.walks, self.summaries) if one.given_up]
-        if self.is_the_paper_s:
+        if self.on_the_papers_hill:
             found += [_integrator(walk, one) for walk, one in zip(self.walks, self.summaries)]
         return found + ([_distribution(self.fits)] if self.fits else [])
 

@@ -47,8 +47,8 @@ def findings(entrant: Entrant) -> Iterator[Finding]:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # whatever the agent raises
-            told = str(error) if isinstance(error, AssertionError) else f"{type(error).__name__}: {error}"
-            yield Finding(name, "failed", told.strip() or type(error).__name__)
+            message = str(error) if isinstance(error, AssertionError) else f"{type(error).__name__}: {error}"
+            yield Finding(name, "failed", message.strip() or type(error).__name__)
         else:
             yield Finding(name, "ok")
 

@@ -86,8 +86,16 @@ class Entrant:
 
         Of an agent that cannot be had these are the name and the parameters that were asked for.
         """
-        told = {"name": self.name, "agent": agent_name(self.agent), "parameters": plain(self.parameters)}
-        return told | {"agent": self.agent.asked, "unavailable": True} if self.unavailable else told
+        description = {
+            "name": self.name,
+            "agent": agent_name(self.agent),
+            "parameters": plain(self.parameters),
+        }
+        return (
+            description | {"agent": self.agent.asked, "unavailable": True}
+            if self.unavailable
+            else description
+        )
 
 
 def sweep(

@@ -68,7 +68,7 @@ class Tournament:
             _integers(self, "", replicates=1)
         for limit in ("time_limit", "memory_limit"):
             if getattr(self, limit) is not None:
-                object.__setattr__(self, limit, number(limit, getattr(self, limit), 0, above=True))
+                object.__setattr__(self, limit, number(limit, getattr(self, limit), 0, exclusive_low=True))
         hill = self.hill._replace(**reading.hill)
         object.__setattr__(self, "hill", hill)
         entrants = tuple(map(reading.read, _entrants(self.entrants)))
@@ -76,7 +76,7 @@ class Tournament:
         self._check_adaptive()
 
     def _check_adaptive(self) -> None:
-        confidence = number("confidence", self.confidence, 0, 1, above=True)
+        confidence = number("confidence", self.confidence, 0, 1, exclusive_low=True)
         object.__setattr__(self, "confidence", confidence)
         if self.replicates != ADAPTIVE:
             return

@@ -16,8 +16,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from envs.compilation.numba_methods import _offer
-from envs.compilation.reachable import Reached
+from envs.compilation.numba_methods import _register
+from envs.compilation.reachable import ReachableCode
 from envs.foundation.errors import InvalidTypeError
 
 _lock = threading.RLock()
@@ -102,11 +102,11 @@ def _writable(folder: Path) -> Path | None:
 
 
 def _compiled(loop: Callable[..., Any], example: tuple[Any, ...]) -> tuple[Callable[..., Any], KernelInfo]:
-    reached = Reached(loop, *example)
+    reached = ReachableCode(loop, *example)
     fingerprint = reached.fingerprint()
     with _lock:
         if fingerprint not in _ready:
-            _offer(reached)
+            _register(reached)
             _ready[fingerprint] = _compile(loop, example, fingerprint, importable=_importable(example))
         return _ready[fingerprint]
 

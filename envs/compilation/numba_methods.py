@@ -5,29 +5,29 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from envs.compilation.reachable import Reached
+from envs.compilation.reachable import ReachableCode
 
-_offered: set[object] = set()
+_registered: set[object] = set()
 
 # LLVM inlines all calls: twice as fast as calls, and a quarter of the time that numba's own inlining takes.
 _CALL = {"forceinline": True}
 
 
-def _offer(reached: Reached) -> None:
+def _register(reached: ReachableCode) -> None:
     """Tell numba about the functions and methods that it has not seen."""
     from numba.extending import register_jitable
 
-    _offer_attributes()
+    _register_attributes()
     for function in [*reached.functions, *reached.methods]:
-        if function not in _offered:
-            _offered.add(function)
+        if function not in _registered:
+            _registered.add(function)
             register_jitable(**_CALL)(function)
     for method in reached.methods:
-        _offer_lowering(method)
+        _register_lowering(method)
 
 
 @cache
-def _offer_attributes() -> None:
+def _register_attributes() -> None:
     """Let ``thing.method`` in compiled code mean the method of the named-tuple class of ``thing``.
 
     ``numba.extending.overload_method`` would bind a name to one signature for all classes; here
@@ -41,7 +41,7 @@ def _offer_attributes() -> None:
 
         def generic_resolve(self, typ: Any, name: str) -> Any:
             method = inspect.getattr_static(getattr(typ, "instance_class", None), name, None)
-            if method not in _offered:
+            if method not in _registered:
                 return None
 
             class Call(AbstractTemplate):  # type: ignore[misc]  # the base is untyped
@@ -58,7 +58,7 @@ def _offer_attributes() -> None:
 
 
 @cache
-def _offer_lowering(method: Callable[..., Any]) -> None:
+def _register_lowering(method: Callable[..., Any]) -> None:
     """A call of the method is a call of its plain function with the named tuple as first argument."""
     from numba import types
     from numba.extending import lower_builtin

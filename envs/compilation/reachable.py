@@ -21,7 +21,7 @@ _FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "collection
 _GENERATED = {*vars(typing.NamedTuple("_", [])), "__new__", "__getnewargs__"}
 
 
-class Reached:
+class ReachableCode:
     """The functions, named-tuple classes and constants that ``roots`` can reach.
 
     Attributes:

@@ -32,9 +32,9 @@ def instance(name: str, value: Any, kind: type[Any]) -> Any:
 
 
 def number(
-    name: str, value: Any, low: float = -math.inf, high: float = math.inf, *, above: bool = False
+    name: str, value: Any, low: float = -math.inf, high: float = math.inf, *, exclusive_low: bool = False
 ) -> float:
-    """``value`` as a finite float in [low, high], or (low, high] where ``above`` is set.
+    """``value`` as a finite float in [low, high], or (low, high] where ``exclusive_low`` is set.
 
     Raises:
         TypeError: when it is no real number.
@@ -43,12 +43,12 @@ def number(
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise InvalidTypeError(f"{name} must be a number, got {value!r}")
     try:
-        found = float(value)
+        converted = float(value)
     except OverflowError:
-        found = math.inf
-    if not math.isfinite(found) or not low <= found <= high or (above and found == low):
-        raise InvalidValueError(f"{name} must be {_range(low, high, above)}, got {value!r}")
-    return found
+        converted = math.inf
+    if not math.isfinite(converted) or not low <= converted <= high or (exclusive_low and converted == low):
+        raise InvalidValueError(f"{name} must be {_range(low, high, exclusive_low)}, got {value!r}")
+    return converted
 
 
 def integer(name: str, value: Any, low: int | None = None) -> int:
@@ -61,12 +61,12 @@ def integer(name: str, value: Any, low: int | None = None) -> int:
     try:
         if isinstance(value, bool):
             raise TypeError
-        found = operator.index(value)
+        converted = operator.index(value)
     except TypeError:
         raise InvalidTypeError(f"{name} must be an integer, got {value!r}") from None
-    if low is not None and found < low:
-        raise InvalidValueError(f"{name} must be at least {low}, got {found}")
-    return found
+    if low is not None and converted < low:
+        raise InvalidValueError(f"{name} must be at least {low}, got {converted}")
+    return converted
 
 
 def choice(name: str, value: Any, options: Iterable[str]) -> str:
@@ -83,11 +83,11 @@ def choice(name: str, value: Any, options: Iterable[str]) -> str:
     return value
 
 
-def _range(low: float, high: float, above: bool) -> str:
+def _range(low: float, high: float, exclusive_low: bool) -> str:
     if math.isfinite(low) and math.isfinite(high):
-        return f"in {'(' if above else '['}{low:g}, {high:g}]"
+        return f"in {'(' if exclusive_low else '['}{low:g}, {high:g}]"
     if math.isfinite(low):
-        return f"a finite number {'greater than' if above else 'of at least'} {low:g}"
+        return f"a finite number {'greater than' if exclusive_low else 'of at least'} {low:g}"
     if math.isfinite(high):
         return f"a finite number of at most {high:g}"
     return "a finite number"

@@ -21,7 +21,7 @@ from arena import Entrant, Evaluation, Tournament, Training, run
 from arena.execution.loops import TrainingLoop, episode_hook, train
 from envs import Hill
 from envs.compilation import cache_directory, compile_loop
-from envs.compilation.reachable import Reached
+from envs.compilation.reachable import ReachableCode
 
 Floats = NDArray[np.float64]
 Step = tuple[Any, int, float, Any, int, bool]  # the arguments of ``learn``
@@ -490,7 +490,7 @@ def test_compiled_agents_allocate_nothing(cls: type[Any], given: dict[str, Any])
     loop = TrainingLoop(hill, agent, episode_hook(agent), 3, 2, 50, *streams, np.zeros(2, np.int64))
     arguments = (loop, 0, 2)
     compile_loop(train, *arguments)
-    folder, fingerprint = cache_directory(), Reached(train, *arguments).fingerprint()
+    folder, fingerprint = cache_directory(), ReachableCode(train, *arguments).fingerprint()
     assert folder is not None
     assert (folder / fingerprint).exists()
     assert not (folder / f"{fingerprint}-counted").exists()

@@ -13,7 +13,7 @@ from paths import ROOT
 from agents import QLearning, Sarsa
 from envs import Hill
 from envs.compilation import CompilationError, compile_loop
-from envs.compilation.reachable import Reached
+from envs.compilation.reachable import ReachableCode
 
 PLUGIN = """
 from typing import NamedTuple
@@ -145,7 +145,7 @@ def test_fingerprints_tell_agents_and_types_apart_but_not_values() -> None:
     hill = Hill()
 
     def mark(agent: Any) -> str:
-        return Reached(call_value, hill, agent).fingerprint()
+        return ReachableCode(call_value, hill, agent).fingerprint()
 
     assert mark(QLearning.create(hill)) == mark(QLearning.create(hill, bins=(7, 9), discount=0.5))
     assert mark(QLearning.create(hill)) != mark(Sarsa.create(hill))

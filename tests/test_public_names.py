@@ -39,13 +39,13 @@ PUBLIC = {
         UpperConfidence agent_class agent_name register
     """,
     "agents.parameters": """
-        Count NonNegative Parameter Positive Probability StepSize inherits parameters_of settle_all
+        Count NonNegative Parameter Positive Probability StepSize extends inherits parameters_of settle_all
         validated
     """,
     "agents.optimal": "NEVER Optimal optimal_steps",
     "agents.discretization": "EdgeGrid Grid TileCoding Voronoi make_cells make_features",
     "envs": "ArenaError Dynamics Hill Integrator InvalidTypeError InvalidValueError",
-    "envs.compilation": "CompilationError cache_directory compile_loop entry_point",
+    "envs.compilation": "CompilationError KernelInfo cache_directory compile_loop entry_point kernel_info",
     "envs.mountain_car_v0": "env parallel_env raw_env",
     "envs.single_car_v0": "SingleCarEnv",
     "envs.vector_car_v0": "VectorCarEnv",

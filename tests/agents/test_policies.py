@@ -98,7 +98,7 @@ def test_a_fingerprint_that_is_given_lets_no_other_policy_race() -> None:
     known = PolicyAgent.of(Model().predict)().fingerprint()
     assert tournament(Model().predict, fingerprint=known).entrants[0].parameters == {"fingerprint": known}
     with pytest.raises(ValueError, match=f"entrant 'model 0': fingerprint must be .* got '{known}'"):
-        tournament(Model(0.01).predict, fingerprint=known)
+        run(tournament(Model(0.01).predict, fingerprint=known), n_jobs=1)
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_what_is_no_policy_is_told_at_once(policy: Any, problem: str) -> None:
 
 def test_without_a_policy_it_cannot_race() -> None:
     with pytest.raises(TypeError, match=r"entrant 'none': policy must be callable, .* got None"):
-        Tournament((Entrant("none", PolicyAgent),))
+        run(Tournament((Entrant("none", PolicyAgent),)), n_jobs=1)
 
 
 @pytest.mark.parametrize("action", [2, np.int8(2), np.array(2), np.array([2]), (np.array(2), None)])

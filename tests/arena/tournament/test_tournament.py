@@ -85,7 +85,7 @@ class Demanding(NoGreedy):
         (lambda: entrant("s", RandomAgent, rng=3), "parameter of random must be one of nothing, got 'rng'"),
         (lambda: entrant("s", Demanding), "parameter must of .*Demanding must be given"),
         (lambda: entrant("s", Sarsa, epsilon={"strt": 0.1}), "field of epsilon .*did you mean 'start'"),
-        (lambda: entrant("s", Sarsa, step_size={"A": -1}), "A must be .* greater than 0, got -1"),
+        (lambda: entrant("s", Sarsa, step_size={"A": -1}), "step_size.A must be greater than 0, got -1"),
         (lambda: list(swept("s", Sarsa, over={"bins": []})), "sweep of bins must be a list .* got \\[\\]"),
         (lambda: list(swept("s", Sarsa, over={"bins": 3})), "sweep of bins must be a list .* got 3"),
     ],

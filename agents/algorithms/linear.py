@@ -43,15 +43,8 @@ class LinearAgent(NamedTuple, Generic[Memory]):
     @classmethod
     def with_memory(cls, linear: "Linear", memory: Memory) -> Self:
         """The agent with all that ``linear`` has, and its memory."""
-        return cls(
-            linear.features,
-            linear.weights,
-            linear.step_size,
-            linear.discount,
-            linear.epsilon,
-            linear.scratch,
-            memory,
-        )
+        features, weights, step_size, discount, epsilon, scratch, _ = linear
+        return cls(features, weights, step_size, discount, epsilon, scratch, memory)
 
     def act(self, observation: Observation, progress: float, rng: np.random.Generator) -> int:
         """Epsilon-greedy, equal values broken at random."""
@@ -103,15 +96,9 @@ class Linear(LinearAgent[None]):
             TypeError, ValueError: when a parameter breaks its rule.
         """
         features = make_features(task, tilings, tiles, bins, binning, rng)
-        return cls(
-            features,
-            np.zeros((features.size, task.n_actions)),
-            step_size / features.active,
-            discount,
-            LinearDecay.of(epsilon),
-            Scratch(np.zeros(features.active, np.int64), np.zeros(features.active, np.int64)),
-            None,
-        )
+        weights, rate = np.zeros((features.size, task.n_actions)), step_size / features.active
+        scratch = Scratch(*np.zeros((2, features.active), np.int64))
+        return cls(features, weights, rate, discount, LinearDecay.of(epsilon), scratch, None)
 
 
 def value_of(weights: Floats, active: Integers, action: int) -> float:

@@ -58,8 +58,7 @@ class PrioritizedSweeping(TabularAgent[Plan]):
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        cells, actions = table.values.shape
-        model, queue = CellModel.empty(cells, actions), PriorityQueue.empty(cells)
+        model, queue = CellModel.empty(*table.values.shape), PriorityQueue.empty(table.cells.size)
         state_values = np.append(table.values.max(axis=1), 0.0)
         return cls.with_memory(table, Plan(model, queue, state_values, planning, threshold))
 

@@ -71,17 +71,11 @@ class RMax(TabularAgent[Knowledge]):
         Raises:
             TypeError, ValueError: when a parameter breaks its rule.
         """
-        cells, actions = table.values.shape
         table.values.fill(greatest_return)
-        knowledge = Knowledge(
-            model=CellModel.empty(cells, actions),
-            state_values=np.append(np.full(cells, greatest_return), 0.0),
-            known=known,
-            sweeps=sweeps,
-            tolerance=tolerance,
-            cells=np.zeros(cells, np.int64),
-            n_cells=np.zeros(1, np.int64),
-        )
+        model = CellModel.empty(*table.values.shape)
+        state_values = np.append(table.values.max(axis=1), 0.0)
+        cells, n_cells = np.zeros(table.cells.size, np.int64), np.zeros(1, np.int64)
+        knowledge = Knowledge(model, state_values, known, sweeps, tolerance, cells, n_cells)
         return cls.with_memory(table, knowledge)
 
     def learn(

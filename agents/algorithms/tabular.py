@@ -40,7 +40,8 @@ class TabularAgent(NamedTuple, Generic[Memory]):
     @classmethod
     def with_memory(cls, table: "Tabular", memory: Memory) -> Self:
         """The agent with all that ``table`` has, and its memory."""
-        return cls(table.cells, table.values, table.visits, table.update, table.policy, memory)
+        cells, values, visits, update, policy, _ = table
+        return cls(cells, values, visits, update, policy, memory)
 
     def begin_episode(self) -> None:
         """Let the update count episodes."""
@@ -100,14 +101,9 @@ class Tabular(TabularAgent[None]):
         cells = make_cells(task, bins, binning, rng)
         shape = (cells.size, task.n_actions)
         rate = step_size if isinstance(step_size, HarmonicRate) else HarmonicRate(step_size, 1.0, 0.0)
-        return cls(
-            cells,
-            _initial(shape, initial_values, rng),
-            np.zeros(shape, np.int64),
-            make_update(shape, rate, discount, count_visits, goal),
-            make_exploration(epsilon, explore),
-            None,
-        )
+        values, visits = _initial(shape, initial_values, rng), np.zeros(shape, np.int64)
+        update = make_update(shape, rate, discount, count_visits, goal)
+        return cls(cells, values, visits, update, make_exploration(epsilon, explore), None)
 
 
 def _initial(

@@ -33,8 +33,5 @@ class TutorialQLearning(QLearning):
 
         Args:
             agent: see ``Tabular.create``; the defaults are the tutorial's.
-
-        Raises:
-            TypeError, ValueError: when a parameter breaks its rule.
         """
         return cls(*agent)

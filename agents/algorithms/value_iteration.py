@@ -20,10 +20,7 @@ from envs.compilation.kernels import compile_loop
 
 _SWEEPS, _TOLERANCE = 5000, 1e-6  # of value iteration
 _HOPELESS = -1e6  # value of a cell without points
-_ROBERTS = (
-    0.7548776662466927,
-    0.5698402909980532,
-)  # steps of a sequence of evenly spread points (Roberts 2018)
+_ROBERTS = 0.7548776662466927, 0.5698402909980532  # steps of a sequence of even points (Roberts 2018)
 _STARTS, _PATIENCE = 100, 500  # of the drives by which a policy is judged
 
 
@@ -146,13 +143,7 @@ def plan(
 
 
 def improve(
-    hill: Any,
-    cells: Cells,
-    starts: Floats,
-    rounds: int,
-    n_actions: int,
-    policy: Integers,
-    passed: Integers,
+    hill: Any, cells: Cells, starts: Floats, rounds: int, n_actions: int, policy: Integers, passed: Integers
 ) -> None:
     """Change the action of one cell after the other where that makes drives shorter.
 

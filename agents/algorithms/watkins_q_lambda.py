@@ -27,9 +27,6 @@ class WatkinsQLambda(SarsaLambda):
 
         Args:
             agent: see ``SarsaLambda.create`` and ``Linear.create``.
-
-        Raises:
-            TypeError, ValueError: when a parameter breaks its rule.
         """
         return cls(*agent)
 

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterable
 from fractions import Fraction
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from agents.contract import Floats, Integers, Observation, Task
-from envs.foundation.checks import instance, integer, number
+from agents.discretization.box import Derived, counts, ranges
 from envs.foundation.errors import InvalidValueError
 
 
@@ -20,7 +20,7 @@ class _Parts(NamedTuple):
     edges: Floats
 
 
-class Grid(_Parts):
+class Grid(Derived, _Parts):  # type: ignore[misc]  # both have _make
     """Cells ``[a + k h, a + (k + 1) h)`` with ``h = (b - a) / n`` in each of any number of dimensions.
 
     ``encode`` is exact: the same as Eq. (18) in exact arithmetic for every float, so that a car at
@@ -42,38 +42,17 @@ class Grid(_Parts):
     """
 
     __slots__ = ()
+    _n_first = 3
 
     def __new__(cls, low: Iterable[float], high: Iterable[float], bins: int | Iterable[int]) -> Self:  # noqa: D102 (described by the class)
-        lows = tuple(number("low", x) for x in instance("low", low, Iterable))
-        highs = tuple(number("high", x) for x in instance("high", high, Iterable))
-        if len(lows) != len(highs) or not lows:
-            raise InvalidValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
-        counts = _counts(bins, len(lows))
-        for a, b in zip(lows, highs, strict=True):
-            number("high", b, a, exclusive_low=True)
-        edges = np.full((len(counts), max(counts) + 1), np.nan)
-        for d, (a, b, n) in enumerate(zip(lows, highs, counts, strict=True)):
+        lows, highs = ranges(low, high)
+        numbers = counts("bins", bins, len(lows))
+        edges = np.full((len(numbers), max(numbers) + 1), np.nan)
+        for d, (a, b, n) in enumerate(zip(lows, highs, numbers, strict=True)):
             edges[d, :n] = _edges(a, b, n)
         edges.flags.writeable = False
-        scales = tuple(_scale(a, b, n, row) for a, b, n, row in zip(lows, highs, counts, edges, strict=True))
-        return super().__new__(cls, lows, highs, counts, scales, edges)
-
-    @classmethod
-    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]  # mypy adds new=, len=
-        low, high, bins, *_ = iterable  # the rest follows from these
-        return cls(low, high, bins)
-
-    def __getnewargs__(self) -> tuple[Any, ...]:
-        return self.low, self.high, self.bins
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Grid) and self.__getnewargs__() == other.__getnewargs__()
-
-    def __ne__(self, other: object) -> bool:
-        return not self == other
-
-    def __hash__(self) -> int:
-        return hash(self.__getnewargs__())
+        scales = tuple(_scale(a, b, n, row) for a, b, n, row in zip(lows, highs, numbers, edges, strict=True))
+        return super().__new__(cls, lows, highs, numbers, scales, edges)
 
     @classmethod
     def over(cls, task: Task, bins: int | Iterable[int]) -> Self:
@@ -107,14 +86,6 @@ class Grid(_Parts):
     def fill(self, observation: Observation, active: Integers) -> None:
         """Write the cell as the only active feature."""
         active[0] = self.encode(observation)
-
-
-def _counts(bins: int | Iterable[int], dimensions: int) -> tuple[int, ...]:
-    given = list(bins) if isinstance(bins, Iterable) else [bins] * dimensions
-    counts = tuple(integer("bins", n, 1) for n in given)
-    if len(counts) != dimensions:
-        raise InvalidValueError(f"bins must have {dimensions} numbers, one a dimension, got {counts}")
-    return counts
 
 
 def _edges(low: float, high: float, bins: int) -> Floats:

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Iterable
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from agents.contract import Integers, Observation, Task
-from envs.foundation.checks import instance, integer, number
-from envs.foundation.errors import InvalidValueError
+from agents.discretization.box import Derived, counts, ranges
+from envs.foundation.checks import integer, number
 
 
 class _Parts(NamedTuple):
@@ -19,7 +19,7 @@ class _Parts(NamedTuple):
     features: Integers
 
 
-class TileCoding(_Parts):
+class TileCoding(Derived, _Parts):  # type: ignore[misc]  # both have _make
     """Binary features: in each of ``tilings`` grids, the tile that the observation is in.
 
     A tile is 1/tiles of a dimension's range. Tiling t is displaced by t times the vector (1, 3, 5, ...)
@@ -42,42 +42,16 @@ class TileCoding(_Parts):
     """
 
     __slots__ = ()
+    _n_first = 4
 
     def __new__(  # noqa: D102 (described by the class)
         cls, low: Iterable[float], high: Iterable[float], tilings: int = 8, tiles: int | Iterable[int] = 8
     ) -> Self:
-        lows = tuple(number("low", x) for x in instance("low", low, Iterable))
-        highs = tuple(number("high", x) for x in instance("high", high, Iterable))
-        if len(lows) != len(highs) or not lows:
-            raise InvalidValueError(f"low and high must have one value a dimension, got {lows} and {highs}")
+        lows, highs = ranges(low, high)
         for a, b in zip(lows, highs, strict=True):
-            number("high", b, a, exclusive_low=True)
             number("high - low", b - a)
-        given = tiles if isinstance(tiles, Iterable) else [tiles] * len(lows)
-        counts = tuple(integer("tiles", n, 1) for n in given)
-        if len(counts) != len(lows):
-            raise InvalidValueError(f"tiles must have {len(lows)} numbers, one a dimension, got {counts}")
-        number_of_tilings = integer("tilings", tilings, 1)
-        return super().__new__(
-            cls, lows, highs, number_of_tilings, counts, _features(number_of_tilings, counts)
-        )
-
-    @classmethod
-    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override]  # mypy adds new=, len=
-        low, high, tilings, tiles, *_ = iterable  # the rest follows from these
-        return cls(low, high, tilings, tiles)
-
-    def __getnewargs__(self) -> tuple[Any, ...]:
-        return self.low, self.high, self.tilings, self.tiles
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, TileCoding) and self.__getnewargs__() == other.__getnewargs__()
-
-    def __ne__(self, other: object) -> bool:
-        return not self == other
-
-    def __hash__(self) -> int:
-        return hash(self.__getnewargs__())
+        numbers, n = counts("tiles", tiles, len(lows)), integer("tilings", tilings, 1)
+        return super().__new__(cls, lows, highs, n, numbers, _features(n, numbers))
 
     @classmethod
     def over(cls, task: Task, tilings: int = 8, tiles: int | Iterable[int] = 8) -> Self:

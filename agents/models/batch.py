@@ -34,14 +34,7 @@ class Batch(NamedTuple):
 
     def first(self, places: int) -> "Batch":
         """What is in the first so many places."""
-        kept = slice(places)
-        return Batch(
-            self.observations[kept],
-            self.actions[kept],
-            self.rewards[kept],
-            self.next_observations[kept],
-            self.goes_on[kept],
-        )
+        return Batch._make(part[:places] for part in self)
 
     def write(
         self,

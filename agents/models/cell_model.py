@@ -92,13 +92,7 @@ class CellModel(NamedTuple):
         return self.rewards[pair] + discount * total / self.tries[pair]  # type: ignore[no-any-return]  # an array has it
 
     def backup(
-        self,
-        values: Floats,
-        visits: Integers,
-        state_values: Floats,
-        cell: int,
-        known: int,
-        discount: float,
+        self, values: Floats, visits: Integers, state_values: Floats, cell: int, known: int, discount: float
     ) -> float:
         """Set the values of a cell to what is expected, and return by how much that changes the best of them.
 

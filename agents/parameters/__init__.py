@@ -10,8 +10,7 @@ from agents.parameters.declared import (
     parameters_of,
     settle_all,
 )
-from agents.parameters.inheritance import inherits
-from agents.parameters.validation import extends, validated
+from agents.parameters.validation import extends, inherits, validated
 
 __all__ = [
     "Count",

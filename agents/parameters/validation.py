@@ -2,7 +2,8 @@
 
 import functools
 import inspect
-from collections.abc import Callable, Collection
+import warnings
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any, Concatenate, TypeVar, cast
 
@@ -47,40 +48,67 @@ def extends(
     Raises:
         TypeError: when ``parent`` has no parameter with a name in ``defaults``.
     """
-    theirs = declared_by(parent)[0]
-    if unknown := defaults.keys() - theirs.keys():
-        raise InvalidTypeError(f"defaults must be those of the parent's parameters, got {sorted(unknown)}")
-    shared = {
-        name: replace(parameter, default=defaults.get(name, parameter.default))
-        for name, parameter in theirs.items()
-        if name not in omit
-    }
+    shared = _shared(parent, omit, defaults)
 
     def extend(create: Callable[..., Agent]) -> Callable[..., Agent]:
         own = declared_by(create)[0]
-        draws = [maker for maker in (parent, create) if "rng" in inspect.signature(maker).parameters]
 
         @functools.wraps(create)
         def extended(cls: type[Agent], task: Any, **given: Any) -> Agent:
             rng = {"rng": given.pop("rng")} if "rng" in given else {}
             ours = {name: given.pop(name) for name in own if name in given}
-            agent = parent(task, **(defaults | given), **(rng if parent in draws else {}))
-            return create(cls, agent, **ours, **(rng if create in draws else {}))
+            agent = parent(task, **(defaults | given), **(rng if _draws(parent) else {}))
+            return create(cls, agent, **ours, **(rng if _draws(create) else {}))
 
-        declared = own | {name: parameter for name, parameter in shared.items() if name not in own}
-        extended.__signature__ = _signature(declared.values(), draws=bool(draws))  # type: ignore[attr-defined]
+        draws = _draws(parent) or _draws(create)
+        extended.__signature__ = _signature(own, shared, draws=draws)  # type: ignore[attr-defined]
         return _validated_arguments(extended)
 
     return extend
 
 
-def _signature(declared: Collection[Parameter], *, draws: bool) -> inspect.Signature:
-    """That of a ``create`` with these parameters, and ``rng`` if it draws."""
+def inherits(
+    parent: Callable[..., Any], *, omit: Collection[str] = (), **defaults: Any
+) -> Callable[[Target], Target]:
+    """As ``extends``, but the parent's parameters arrive as ``**inherited``; put it under ``validated``.
+
+    Deprecated: it will be gone in 0.4.
+    """
+    message = "inherits is deprecated and will be gone in 0.4: use agents.parameters.extends"
+    warnings.warn(message, DeprecationWarning, stacklevel=2)
+    shared = _shared(parent, omit, defaults)
+
+    def extend(create: Target) -> Target:
+        own = declared_by(create)[0]
+        create.__signature__ = _signature(own, shared, draws=_draws(create))  # type: ignore[attr-defined]
+        return create
+
+    return extend
+
+
+def _shared(parent: Any, omit: Collection[str], defaults: Mapping[str, Any]) -> dict[str, Parameter]:
+    """The parameters that are taken over from ``parent``."""
+    declared = declared_by(parent)[0]
+    if unknown := defaults.keys() - declared.keys():
+        raise InvalidTypeError(f"defaults must be those of inherited parameters, got {sorted(unknown)}")
+    kept = {name: parameter for name, parameter in declared.items() if name not in omit}
+    return {name: replace(p, default=defaults.get(name, p.default)) for name, p in kept.items()}
+
+
+def _signature(
+    own: Mapping[str, Parameter], shared: Mapping[str, Parameter], *, draws: bool
+) -> inspect.Signature:
+    """That of a ``create`` with these parameters, and with ``rng`` if it draws."""
     keyword = inspect.Parameter.KEYWORD_ONLY
     first = [inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD) for name in ("cls", "task")]
+    declared = [*own.values(), *(parameter for name, parameter in shared.items() if name not in own)]
     rest = [inspect.Parameter(p.name, keyword, default=p.default, annotation=p.annotation) for p in declared]
     rng = [inspect.Parameter("rng", keyword, default=None)] if draws else []
     return inspect.Signature([*first, *rest, *rng])
+
+
+def _draws(create: Callable[..., Any]) -> bool:
+    return "rng" in inspect.signature(create).parameters
 
 
 def _validated_arguments(create: Callable[..., Agent]) -> Callable[..., Agent]:

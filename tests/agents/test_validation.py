@@ -165,9 +165,7 @@ def test_an_omitted_parameter_may_have_another_default_but_no_unknown_one() -> N
     doubled = extends(parent, omit=["gain"], gain=3.0)(create)
     assert doubled(Spring, None) == (3.0, 0.5, 3.0, 0.5)
     assert doubled(Spring, None, drag=1, count=1) == (3.0, 1.0)
-    with pytest.raises(
-        TypeError, match=r"^defaults must be those of the parent's parameters, got \['four'\]$"
-    ):
+    with pytest.raises(TypeError, match=r"^defaults must be those of inherited parameters, got \['four'\]$"):
         extends(parent, four=4)
 
 

@@ -273,7 +273,7 @@ class Store:
         """Tell what SQLite says of a damaged file in one sentence."""
         try:
             yield
-        except (sqlite3.Error, MemoryError) as error:
+        except (sqlite3.Error, UnicodeDecodeError, MemoryError) as error:  # SQLite quotes the file
             raise self._damaged(first_line(error)) from error
 
     @contextmanager

@@ -23,7 +23,7 @@ from arena import Entrant, Tournament, load, run
 from arena.common.npz import pack, unpack
 from arena.report.tables import render
 from arena.reproduction import compare
-from arena.results import digest
+from arena.results import ResultsError, digest
 from arena.results.store import SCHEMA_VERSION, Store
 from arena.tournament.outcome import Outcome, Status, score
 from envs.foundation.errors import ArenaError
@@ -204,6 +204,14 @@ def test_nothing_but_one_sentence_comes_of_a_file_with_wrong_bytes(
     path.write_bytes(content)
     with contextlib.suppress(ArenaError):
         read_all(path)
+
+
+def test_a_schema_that_is_no_text_is_told_as_damage(file: Path) -> None:
+    content = file.read_bytes()
+    assert content.count(b"CREATE TABLE tournament") == 1
+    file.write_bytes(content.replace(b"CREATE TABLE tournament", b"CREATE TABL\x80 tournament"))
+    with pytest.raises(ResultsError, match="is damaged"):
+        load(file)
 
 
 VALUES = (

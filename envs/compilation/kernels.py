@@ -21,7 +21,7 @@ from envs.compilation.reachable import ReachableCode
 from envs.foundation.errors import InvalidTypeError
 
 _lock = threading.RLock()
-_ready: dict[str, tuple[Callable[..., Any], "KernelInfo"]] = {}
+_ready: dict[str, "_Kernel"] = {}
 # The interpreter's arithmetic without its ZeroDivisionError, which a kernel of many threads cannot raise.
 _LOOP = {"nogil": True, "error_model": "numpy"}
 
@@ -37,6 +37,20 @@ class KernelInfo(NamedTuple):
 
     fingerprint: str
     counts_references: bool
+
+
+class _Kernel(NamedTuple):
+    """A compiled loop: numba's dispatcher, the types that it is compiled for, and what it is like."""
+
+    dispatcher: Any
+    types: tuple[Any, ...]
+    info: KernelInfo
+
+    @property
+    def entry_point(self) -> Callable[..., Any]:
+        """The machine code, which looks at no types."""
+        entry: Callable[..., Any] = self.dispatcher.overloads[self.types].entry_point
+        return entry
 
 
 class CompilationError(InvalidTypeError):
@@ -55,7 +69,14 @@ def compile_loop(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
     Raises:
         CompilationError: when numba cannot compile it.
     """
-    return _compiled(loop, example)[0]
+    import numba
+
+    kernel = _compiled(loop, example)
+    if tuple(map(numba.typeof, example)) == kernel.types:
+        return kernel.dispatcher  # type: ignore[no-any-return]  # numba is untyped
+    # Numba knows a class by its object, of which there are several when workers unpickle it again and again.
+    # All that is compiled in is the same, or the fingerprint would be another.
+    return kernel.entry_point
 
 
 def kernel_info(loop: Callable[..., Any], *example: Any) -> KernelInfo:
@@ -64,7 +85,7 @@ def kernel_info(loop: Callable[..., Any], *example: Any) -> KernelInfo:
     Raises:
         CompilationError: when numba cannot compile it.
     """
-    return _compiled(loop, example)[1]
+    return _compiled(loop, example).info
 
 
 def entry_point(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
@@ -76,11 +97,7 @@ def entry_point(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
     Raises:
         CompilationError: when numba cannot compile it.
     """
-    import numba
-
-    kernel: Any = compile_loop(loop, *example)
-    found: Callable[..., Any] = kernel.overloads[tuple(map(numba.typeof, example))].entry_point
-    return found
+    return _compiled(loop, example).entry_point
 
 
 def cache_directory() -> Path | None:
@@ -101,7 +118,7 @@ def _writable(folder: Path) -> Path | None:
     return folder
 
 
-def _compiled(loop: Callable[..., Any], example: tuple[Any, ...]) -> tuple[Callable[..., Any], KernelInfo]:
+def _compiled(loop: Callable[..., Any], example: tuple[Any, ...]) -> _Kernel:
     reached = ReachableCode(loop, *example)
     fingerprint = reached.fingerprint()
     with _lock:
@@ -113,9 +130,10 @@ def _compiled(loop: Callable[..., Any], example: tuple[Any, ...]) -> tuple[Calla
 
 def _compile(
     loop: Callable[..., Any], example: tuple[Any, ...], fingerprint: str, *, importable: bool
-) -> tuple[Callable[..., Any], KernelInfo]:
+) -> _Kernel:
     import numba
 
+    types = tuple(map(numba.typeof, example))
     folder = cache_directory() if importable else None
     # Counting references to the agent's arrays doubles the time of a step, so it is off
     # (``_nrt``) unless that fails, because the agent's own code allocates memory.
@@ -124,11 +142,11 @@ def _compile(
         with _numba_cache(counted if counting else folder and folder / fingerprint):
             kernel = numba.njit(loop, cache=folder is not None, **_LOOP, _nrt=counting)
         try:
-            kernel.compile(tuple(map(numba.typeof, example)))
+            kernel.compile(types)
         except Exception as error:  # numba raises nearly anything
             problem = error
         else:
-            return kernel, KernelInfo(fingerprint, counting)
+            return _Kernel(kernel, types, KernelInfo(fingerprint, counting))
     raise CompilationError(_reason(problem)) from problem
 
 

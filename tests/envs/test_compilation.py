@@ -12,7 +12,7 @@ from paths import ROOT
 
 from agents import QLearning, Sarsa
 from envs import Hill
-from envs.compilation import CompilationError, compile_loop
+from envs.compilation import CompilationError, compile_loop, entry_point
 from envs.compilation.reachable import ReachableCode
 
 PLUGIN = """
@@ -131,6 +131,23 @@ def test_a_class_that_is_defined_anew_as_in_a_notebook_is_not_mistaken_for_the_o
     for factor in (2.0, 3.0):
         thing = make_class(factor)(1.0)
         assert compile_loop(call_value, thing)(thing) == factor
+
+
+class Holder(NamedTuple):
+    thing: Any
+    factor: float
+
+
+def call_held(holder: Holder) -> float:
+    return holder.factor * holder.thing.value()  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("hand_out", [compile_loop, entry_point])
+def test_another_object_of_the_same_class_as_workers_unpickle_it_runs_the_same_code(hand_out: Any) -> None:
+    for factor in (2.5, 3.5, 2.5):  # after each edit, twice
+        for _ in range(2):
+            holder = Holder(make_class(factor)(2.0), 10.0)
+            assert hand_out(call_held, holder)(holder) == call_held(holder) == 20.0 * factor
 
 
 def test_numbas_own_cache_folder_is_left_as_it_was() -> None:

@@ -64,11 +64,11 @@ class MonteCarlo(TabularAgent[StepBuffer]):
             terminated: whether the newest reached the goal.
         """
         steps, goal = self.memory, terminated
-        following = self.values[steps.states[steps.cursor[0], 0], steps.actions[steps.cursor[0]]]
+        next_value = self.values[steps.states[steps.cursor[0], 0], steps.actions[steps.cursor[0]]]
         for age in range(1, steps.pending[0] + 1):
             place = steps.back(age)
             cell, action, reward = steps.states[place, 0], steps.actions[place], steps.rewards[place]
-            self.update.apply(self.values, self.visits, cell, action, reward, following, goal)
-            following = self.update.target(reward, following, goal)
+            self.update.apply(self.values, self.visits, cell, action, reward, next_value, goal)
+            next_value = self.update.target(reward, next_value, goal)
             goal = False
         steps.pending[0] = 0

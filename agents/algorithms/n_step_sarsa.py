@@ -65,11 +65,11 @@ class NStepSarsa(TabularAgent[StepBuffer]):
             terminated: whether the newest step reached the goal.
         """
         steps, goal = self.memory, terminated
-        following = self.values[steps.states[steps.cursor[0], 0], steps.actions[steps.cursor[0]]]
+        next_value = self.values[steps.states[steps.cursor[0], 0], steps.actions[steps.cursor[0]]]
         for age in range(1, steps.pending[0]):
-            following = self.update.target(steps.rewards[steps.back(age)], following, goal)
+            next_value = self.update.target(steps.rewards[steps.back(age)], next_value, goal)
             goal = False
         place = steps.back(steps.pending[0])
         cell, action, reward = steps.states[place, 0], steps.actions[place], steps.rewards[place]
-        self.update.apply(self.values, self.visits, cell, action, reward, following, goal)
+        self.update.apply(self.values, self.visits, cell, action, reward, next_value, goal)
         steps.pending[0] -= 1

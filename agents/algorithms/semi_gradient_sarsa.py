@@ -60,13 +60,13 @@ class SemiGradientSarsa(LinearAgent[StepBuffer]):
         elif steps.is_full():
             self.learn_oldest(value_of(self.weights, steps.states[steps.cursor[0]], next_action))
 
-    def learn_oldest(self, following: float) -> None:
+    def learn_oldest(self, next_value: float) -> None:
         """Learn the oldest step that waits.
 
         Args:
-            following: value of what follows the newest step.
+            next_value: value of what follows the newest step.
         """
-        steps, target = self.memory, following
+        steps, target = self.memory, next_value
         for age in range(1, steps.pending[0] + 1):
             target = bootstrapped(steps.rewards[steps.back(age)], self.discount, target)
         place = steps.back(steps.pending[0])

@@ -10,9 +10,9 @@ from agents.contract import Floats
 from agents.learning.action_values import best_action
 
 
-def bootstrapped(reward: float, discount: float, following: float) -> float:
+def bootstrapped(reward: float, discount: float, next_value: float) -> float:
     """R + gamma G', with G' the return or the value of what follows, Eq. (3.9)."""
-    return reward + discount * following
+    return reward + discount * next_value
 
 
 def greatest_value(values: Floats, cell: int) -> float:

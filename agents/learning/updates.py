@@ -66,16 +66,16 @@ class Update(NamedTuple):
         target = self.target(reward, next_value, terminated)
         values[cell, action] += rate * (target - values[cell, action])
 
-    def target(self, reward: float, following: float, terminated: bool) -> float:
+    def target(self, reward: float, next_value: float, terminated: bool) -> float:
         """What a step returns: its target in Eq. (15).
 
         Args:
             reward: of the step.
-            following: what the next step returns, or its value.
+            next_value: what the next step returns, or its value.
             terminated: whether the step reached the goal.
         """
         if not terminated or self.goal == GoalRule.BOOTSTRAP:
-            return bootstrapped(reward, self.discount, following)
+            return bootstrapped(reward, self.discount, next_value)
         return reward if self.goal == GoalRule.TERMINAL else 0.0
 
     def earlier(self, visits: Integers, cell: int, action: int) -> int:

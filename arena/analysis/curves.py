@@ -26,11 +26,11 @@ def moving_average(values: ArrayLike, window: int = WINDOW) -> NDArray[np.float6
 
     It has ``window - 1`` values less; none if there are fewer than ``window``.
     """
-    found = np.asarray(values, dtype=float)
+    series = np.asarray(values, dtype=float)
     window = integer("window", window, 1)
-    if len(found) < window:
+    if len(series) < window:
         return np.empty(0)
-    curve: NDArray[np.float64] = np.lib.stride_tricks.sliding_window_view(found, window).mean(axis=1)
+    curve: NDArray[np.float64] = np.lib.stride_tricks.sliding_window_view(series, window).mean(axis=1)
     return curve
 
 

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-from arena.analysis.scores import SCORES, Floats, Scores, scores_of
+from arena.analysis.scores import SCORES, Scores, scores_of
 from arena.analysis.standings import check_confidence
+from arena.common.npz import Floats
 from arena.common.plain import as_plain
 from arena.results.results import Results
 from arena.statistics.intervals import Estimate, bootstrap_interval, mean_estimate, probability_of_improvement

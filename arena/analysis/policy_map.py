@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from agents.algorithms.linear import best_action_of, value_of
 from agents.discretization.edge_grid import EdgeGrid
 from agents.discretization.grid import Grid
+from arena.common.npz import Floats
 from arena.results.trained import Trained, UnknownPolicyError
 from envs import Hill
 
 FINE = (90, 60)
 """Cells along position and velocity where the agent has none of its own that could be drawn."""
 
-Floats = NDArray[np.float64]
 MAX_CELLS = 10_000  # more of its own are not told apart in a picture
 
 
@@ -69,12 +69,12 @@ def policy(trained: Trained, where: PolicyMap) -> NDArray[np.int64]:
     Raises:
         UnknownPolicyError: when the agent does not choose the same twice.
     """
-    found = np.array([[int(trained.agent.greedy(o)) for o in row] for row in where.middles])
-    middle = found.shape[1] // 2  # cells of the least speeds are asked again
+    actions = np.array([[int(trained.agent.greedy(o)) for o in row] for row in where.middles])
+    middle = actions.shape[1] // 2  # cells of the least speeds are asked again
     again = [int(trained.agent.greedy(row[middle])) for row in where.middles]
-    if np.any(found[:, middle] != again):
+    if np.any(actions[:, middle] != again):
         raise UnknownPolicyError(f"{trained.entrant!r} drives by chance: it has no policy to draw")
-    return found
+    return actions
 
 
 def visits(trained: Trained, where: PolicyMap) -> NDArray[np.int64] | None:

@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arena.analysis.regret import Bounds, fewest_steps
+from arena.common.npz import Floats
 from arena.results.records import RunRecord
 from arena.results.results import Results
 from envs.foundation.checks import choice
 from envs.foundation.errors import InvalidValueError
-
-Floats = NDArray[np.float64]
 
 
 class Score(NamedTuple):

@@ -86,11 +86,17 @@ class Leaderboard:
         import pandas as pd
 
         rows = []
-        for one in self.standings:
-            row: dict[str, Any] = {"place": one.place, "last_place": one.last_place, "entrant": one.entrant}
-            for name, estimate in {**one.scores, f"{self.by}_iqm": one.interquartile}.items():
+        for standing in self.standings:
+            row: dict[str, Any] = {
+                "place": standing.place,
+                "last_place": standing.last_place,
+                "entrant": standing.entrant,
+            }
+            for name, estimate in {**standing.scores, f"{self.by}_iqm": standing.interquartile}.items():
                 row |= {name: estimate.value, f"{name}_low": estimate.low, f"{name}_high": estimate.high}
-            rows.append({**row, "first": one.shares[0], "failed": one.failed, "replicates": self.replicates})
+            rows.append(
+                {**row, "first": standing.shares[0], "failed": standing.failed, "replicates": self.replicates}
+            )
         return pd.DataFrame(rows)
 
 

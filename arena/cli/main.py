@@ -97,8 +97,8 @@ def _tell(error: Exception, arguments: list[str]) -> int:
 def _received(error: Any, arguments: list[str]) -> str:
     """The value of the option that is wrong, where the message does not tell it."""
     options = getattr(getattr(error, "param", None), "opts", ())
-    for place, one in enumerate(arguments):
-        name, equals, value = one.partition("=")
+    for place, argument in enumerate(arguments):
+        name, equals, value = argument.partition("=")
         if name in options:
             value = value if equals else "".join(arguments[place + 1 : place + 2])
             return "" if repr(value) in error.format_message() else f", got {value!r}"

@@ -84,7 +84,7 @@ def _regret(results: "Results", named: list[str] | None, replicate: int, _by: st
     return _figure_of(draw_regret(results, names, replicate, starts, fewest))
 
 
-def _of_one(name: str) -> Callable[..., "Figure"]:
+def _of_entrant(name: str) -> Callable[..., "Figure"]:
     """What draws the policy of one entrant by this function of ``arena.figures.policy``."""
 
     def draw(results: "Results", named: list[str] | None, replicate: int, _by: str) -> "Figure":
@@ -133,10 +133,10 @@ def _pairs(results: "Results", named: list[str] | None, _replicate: int, by: str
 
 _DRAW: dict[Kind, Callable[..., "Figure"]] = {
     Kind.LEARNING: _learning,
-    Kind.POLICY: _of_one("draw_policy"),
-    Kind.VISITS: _of_one("draw_visits"),
-    Kind.VALUE: _of_one("draw_value"),
-    Kind.PHASE: _of_one("draw_phase"),
+    Kind.POLICY: _of_entrant("draw_policy"),
+    Kind.VISITS: _of_entrant("draw_visits"),
+    Kind.VALUE: _of_entrant("draw_value"),
+    Kind.PHASE: _of_entrant("draw_phase"),
     Kind.REGRET: _regret,
     Kind.SWEEP: _sweep,
     Kind.INTERVALS: _of_board("draw_intervals"),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Arrays = dict[str, NDArray[Any]]
+Floats = NDArray[np.float64]
 
 
 def pack(arrays: Mapping[str, NDArray[Any]]) -> bytes:

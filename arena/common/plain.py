@@ -40,8 +40,8 @@ def plain(value: Any) -> Any:
 
 def as_plain(record: Any) -> dict[str, Any]:
     """The dataclass as plain values, NaN as None; estimates by the names of their parts."""
-    found: dict[str, Any] = without_nan(asdict(record, dict_factory=_by_name))
-    return found
+    plain_record: dict[str, Any] = without_nan(asdict(record, dict_factory=_by_name))
+    return plain_record
 
 
 def _by_name(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from envs.compilation.reachable import ReachableCode
 
 NAME = "compiled"
 _PIECE = 1000  # episodes at first between two looks at the clock
-_SHORT = 0.5  # seconds; a shorter piece is doubled, a longer one halved
+_SHORT = 0.5  # seconds, or the time between two checkpoints; a shorter piece is doubled, a longer one halved
 
 
 def drive(conditions: Conditions, runs: Iterable[Run]) -> list[Outcome]:
@@ -76,7 +76,8 @@ def _train(conditions: Conditions, run: Run, loop: TrainingLoop) -> None:
     kernel = compile_loop(train, loop, 0, 0)
     checkpoint = checkpoint_of(conditions, run, loop.agent, loop.start_rng, loop.action_rng, loop.lengths)
     done = checkpoint.restore()
-    piece = _PIECE if checkpoint.path else loop.episodes
+    short = min(_SHORT, conditions.checkpoint_seconds)
+    piece = (_PIECE if short else 1) if checkpoint.path else loop.episodes
     saved = time.monotonic()
     while done < loop.episodes:
         began, last = time.monotonic(), min(done + piece, loop.episodes)
@@ -85,4 +86,4 @@ def _train(conditions: Conditions, run: Run, loop: TrainingLoop) -> None:
         if now - saved >= conditions.checkpoint_seconds and done < loop.episodes:
             checkpoint.save(done)
             saved = now
-        piece = max(1, piece * 2 if now - began < _SHORT else piece // 2)
+        piece = max(1, piece * 2 if now - began < short else piece // 2)

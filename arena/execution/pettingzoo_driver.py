@@ -101,10 +101,10 @@ class _Car:
         self.finished = Outcome.finished(self.run, NAME, self.agent, *lengths, seconds)
 
     def _checked(self, action: Any) -> int:
-        found = integer("action", action, 0)
-        if found >= self.n_actions:
-            raise InvalidValueError(f"action must be less than {self.n_actions}, got {found}")
-        return found
+        number = integer("action", action, 0)
+        if number >= self.n_actions:
+            raise InvalidValueError(f"action must be less than {self.n_actions}, got {number}")
+        return number
 
 
 def _train(conditions: Conditions, cars: Mapping[str, _Car]) -> None:

@@ -105,17 +105,17 @@ def _lease_and_work(work: Work, task: Task, folder: Path, limits: Limits, parent
 
 def _suspects(folder: Path) -> dict[str, str]:
     """The runs that were being driven when a worker died, with the reason where it is known."""
-    found: dict[str, str] = {}
+    reasons: dict[str, str] = {}
     for open_lease in open_leases(folder):
         for identity in open_lease.runs:
             # Of several cars driven together any may be the one that broke the limit.
-            found[identity] = open_lease.reason if len(open_lease.runs) == 1 else ""
+            reasons[identity] = open_lease.reason if len(open_lease.runs) == 1 else ""
     for path in folder.iterdir():
         path.unlink(missing_ok=True)
-    return found
+    return reasons
 
 
 def _exit_codes(death: BrokenProcessPool) -> str:
     """What the message of joblib says of the exit code, such as ``SIGSEGV(-11)``."""
-    found = re.search(r"exit codes of the workers are \{(.*?)\}", str(death))
-    return f"exit code {found[1]}" if found else str(death).splitlines()[0]
+    codes = re.search(r"exit codes of the workers are \{(.*?)\}", str(death))
+    return f"exit code {codes[1]}" if codes else str(death).splitlines()[0]

@@ -126,11 +126,11 @@ def expected_costs(trained: Trained, where: PolicyMap) -> "np.ma.MaskedArray[Any
     Raises:
         UnknownPolicyError: when the agent has no values.
     """
-    found, counts = values(trained, where), visits(trained, where)
-    if found is None:
+    cell_values, counts = values(trained, where), visits(trained, where)
+    if cell_values is None:
         raise UnknownPolicyError(f"{trained.entrant!r} has no values of actions to draw")
-    unknown = np.zeros(found.shape, bool) if counts is None else counts.sum(axis=2) == 0
-    return np.ma.MaskedArray(-found, unknown)
+    unknown = np.zeros(cell_values.shape, bool) if counts is None else counts.sum(axis=2) == 0
+    return np.ma.MaskedArray(-cell_values, unknown)
 
 
 def draw_phase(trained: Trained, axes: "Axes | None" = None, starts: Sequence[float] | None = None) -> "Axes":

@@ -38,8 +38,8 @@ def code_of(agent: type[Any]) -> Mapping[str, str]:
         module = sys.modules.get(agent.__module__)
         files: dict[str, Path | None] = {**dict.fromkeys(names), **(own_modules(module) if module else {})}
         specs = {name: _spec(name) for name in files}
-        found = {name: _text(name, file) for name, file in sorted(files.items())}
-        code = {name: digest for name, digest in found.items() if digest}
+        digests = {name: _text(name, file) for name, file in sorted(files.items())}
+        code = {name: digest for name, digest in digests.items() if digest}
         code |= {} if _travels(agent) else {_LOADED: _loaded_code(agent)}
         _codes[agent] = specs, code
     return code
@@ -121,7 +121,7 @@ def _spec(name: str) -> Any:
 
 def _reloaded() -> bool:
     """Whether any module was imported anew since the last call: helpers of an agent, too."""
-    modules = [(name, found) for name, found in sys.modules.items() if type(found) is types.ModuleType]
+    modules = [(name, value) for name, value in sys.modules.items() if type(value) is types.ModuleType]
     specs = {name: vars(module).get("__spec__") for name, module in modules}
     anew = any(_specs.get(name, spec) is not spec for name, spec in specs.items())
     _specs.update(specs)

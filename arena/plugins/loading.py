@@ -127,24 +127,24 @@ def _register(path: Path, source: PluginSource, origin: str) -> dict[str, type[A
         raise
     except BaseException as error:  # whatever its code raises; sys.exit, too
         raise PluginError(f"plugin {path}{_place(error, source.path)}: {_reason(error)}") from error
-    found: dict[str, type[Any]] = {}
+    classes: dict[str, type[Any]] = {}
     for cls in vars(module).values():
         if _meant_as_agent(cls, source.module):
-            other = found.setdefault(kebab(cls.__name__), cls)
+            other = classes.setdefault(kebab(cls.__name__), cls)
             if other is not cls:
                 raise PluginError(
                     f"plugin {path}: {other.__name__} and {cls.__name__} would both be called "
                     f"{kebab(cls.__name__)!r}"
                 )
-    if not found:
+    if not classes:
         raise PluginError(f"plugin {path} defines no agent: a class with the methods act, learn and greedy")
-    for name, cls in found.items():
+    for name, cls in classes.items():
         try:
             register(name, cls, origin)
         except ArenaError as error:
             forget(origin)  # all of it or nothing
             raise PluginError(f"plugin {path}: {error}") from error
-    return found
+    return classes
 
 
 def _meant_as_agent(cls: Any, module: str) -> bool:

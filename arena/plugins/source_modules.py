@@ -49,8 +49,8 @@ def _named(module: types.ModuleType) -> Iterator[str]:
         if isinstance(value, types.ModuleType):
             yield value.__name__
         else:
-            found = value if isinstance(value, (type, types.FunctionType)) else type(value)
-            yield str(found.__module__)
+            definition = value if isinstance(value, (type, types.FunctionType)) else type(value)
+            yield str(definition.__module__)
 
 
 def _is_installed(folder: Path) -> bool:
@@ -69,14 +69,14 @@ def _file(folder: Path, name: str) -> Path | None:
 @cache
 def _imported(name: str, file: Path, _edited: int) -> tuple[str, ...]:
     """What the text imports; parts of packages, too, which may be modules."""
-    found: list[str] = []
+    imported: list[str] = []
     package = name if file.name == "__init__.py" else name.rpartition(".")[0]
     for base, parts, modules in _IMPORT.findall(file.read_text(encoding="utf-8", errors="replace")):
         for module in modules.split(","):
-            found += re.findall(r"^\s*([.\w]+)", module)  # without its ``as``
+            imported += re.findall(r"^\s*([.\w]+)", module)  # without its ``as``
         if base:
             up = len(base) - len(base.lstrip("."))
             above = package.rsplit(".", up - 1)[0] if up else ""
             whole = ".".join(filter(None, (above, base[up:])))
-            found += [whole, *(f"{whole}.{part}" for part in re.findall(r"\w+", parts))]
-    return tuple(found)
+            imported += [whole, *(f"{whole}.{part}" for part in re.findall(r"\w+", parts))]
+    return tuple(imported)

@@ -18,8 +18,12 @@ def results_html(results: Results) -> str:
     board = leaderboard(results)
     names = list(board.standings[0].scores)
     rows = (
-        [one.places, one.entrant, *(f"{one.scores[name].value:,.{decimals(name)}f}" for name in names)]
-        for one in board.standings
+        [
+            standing.places,
+            standing.entrant,
+            *(f"{standing.scores[name].value:,.{decimals(name)}f}" for name in names),
+        ]
+        for standing in board.standings
     )
     replicates = f"{board.replicates} replicate{'s' * (board.replicates != 1)} of all"
     return table(f"Tournament {results.config['name']}: {replicates}", ["place", "entrant", *names], rows)
@@ -29,8 +33,12 @@ def results_html(results: Results) -> str:
 def tournament_html(tournament: Tournament) -> str:
     """The entrants, and what was given of their parameters."""
     rows = (
-        [one.name, one.agent.__name__, ", ".join(f"{key}={one.parameters[key]}" for key in sorted(one.given))]
-        for one in tournament.entrants
+        [
+            entrant.name,
+            entrant.agent.__name__,
+            ", ".join(f"{key}={entrant.parameters[key]}" for key in sorted(entrant.given)),
+        ]
+        for entrant in tournament.entrants
     )
     heading = f"Tournament {tournament.name}: {tournament.replicates} replicates, seed {tournament.seed}"
     return table(heading, ["entrant", "agent", "parameters given"], rows)

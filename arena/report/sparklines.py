@@ -1,10 +1,12 @@
-"""What a terminal can show beside the tables: sparklines of learning, and the policy of the best."""
+"""What a terminal can show beside the tables: sparklines of learning, and the best policy learned."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
+from agents.baselines import DoesNotLearn
+from agents.registry import agent_class
 from arena.analysis.curves import reward_curves
 from arena.analysis.policy_map import map_of, policy
 from arena.figures.style import ACTION_NAMES, ACTIONS
@@ -24,16 +26,17 @@ def can_show(console: Console) -> bool:
 
 def sparkline(values: ArrayLike, low: float, high: float, width: int = _WIDTH) -> str:
     """The values as a line of blocks, between ``low`` and ``high``, each the mean of some."""
-    found = np.asarray(values, float)
-    means = [part.mean() for part in np.array_split(found, min(width, len(found)))]
+    heights = np.asarray(values, float)
+    means = [part.mean() for part in np.array_split(heights, min(width, len(heights)))]
     shares = (np.array(means) - low) / ((high - low) or 1.0)
     return "".join(LEVELS[int(level)] for level in np.clip(shares * len(LEVELS), 0, len(LEVELS) - 1))
 
 
 def pictures(results: Results) -> RenderableType:
-    """Learning curves of the best, on one logarithmic scale, and the policy of the first; or nothing."""
+    """Learning curves of the best, on one logarithmic scale, and the best policy learned; or nothing."""
     try:
-        names = results.best(_BEST)
+        ranked = results.best(len(results.entrants))
+        names = ranked[:_BEST]
         curves = {name: reward_curves(results, name).mean(axis=0) for name in names}
     except InvalidValueError:  # no run has finished, or there are too few episodes for a curve
         return Group()
@@ -42,13 +45,16 @@ def pictures(results: Results) -> RenderableType:
     width = max(map(len, names))
     lines = [Text(f"{name:{width}}  {sparkline(-np.log(-curve), *ends)}") for name, curve in curves.items()]
     heading = f"Learning: accumulated reward by episode, from {low:,.0f} to {high:,.0f} (logarithmic)."
-    return Group(Text(heading), *lines, *_policy(results, names[0]))
+    return Group(Text(heading), *lines, *_learned_policy(results, ranked))
 
 
-def _policy(results: Results, name: str) -> list[Text]:
+def _learned_policy(results: Results, ranked: list[str]) -> list[Text]:
+    """What a planner does is no news, and to make one again may take the compiler."""
     try:
-        return blocks(results.trained(name))
-    except InvalidValueError:  # one that cannot be told
+        agents = ((name, agent_class(results.entrants[name].agent)) for name in ranked)
+        best = next(name for name, agent in agents if not issubclass(agent, DoesNotLearn))
+        return blocks(results.trained(best))
+    except (StopIteration, InvalidValueError):  # there is none, or it cannot be told
         return []
 
 

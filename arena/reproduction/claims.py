@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from arena.analysis.curves import moving_average, settled
+from arena.common.npz import Floats
 from arena.reproduction.published_values import (
     MINIMUM_ACCURACY,
     PAPER,
@@ -19,7 +20,7 @@ from arena.reproduction.published_values import (
     Key,
     published,
 )
-from arena.reproduction.tables import SCORES, Floats, iterations_spread, paper_tables
+from arena.reproduction.tables import PAPER_SCORES, iterations_spread, paper_tables
 from arena.reproduction.verdicts import Claim, holds_claim, measured_claim, number_claim, untestable_claim
 from arena.results.results import Results
 from arena.statistics.intervals import correlation
@@ -92,7 +93,7 @@ def _walk_claims(walks: Sequence[RandomWalk]) -> Iterator[Claim]:
 
 
 def _cell_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
-    for score, table, column in zip(SCORES, ("Table 1", "Table 1", "Table 2"), range(3), strict=True):
+    for score, table, column in zip(PAPER_SCORES, ("Table 1", "Table 1", "Table 2"), range(3), strict=True):
         for number, ((algorithm, n_p, n_v), row) in enumerate(published().items()):
             statement = f"{score.replace('_', ' ')} of {algorithm} {n_p}x{n_v}"
             yield number_claim(table, statement, row[column], tables[score][number])
@@ -135,8 +136,8 @@ def _best_cell_claims(length: Floats) -> Iterator[Claim]:
     )
 
 
-def _neighbours(one: Key, other: Key) -> bool:
-    return one[0] == other[0] and abs(one[1] - other[1]) + abs(one[2] - other[2]) == 10
+def _neighbours(key: Key, other: Key) -> bool:
+    return key[0] == other[0] and abs(key[1] - other[1]) + abs(key[2] - other[2]) == 10
 
 
 def _iteration_claims(iterations: Floats) -> Iterator[Claim]:
@@ -153,11 +154,11 @@ def _iteration_claims(iterations: Floats) -> Iterator[Claim]:
 
 
 def _correlation_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
-    accuracy, length, iterations = (tables[score] for score in SCORES)
+    accuracy, length, iterations = (tables[score] for score in PAPER_SCORES)
     first, second = slice(0, 16), slice(16, 32)
     of_lengths = [row[1] for row in published().values()]
     printed = correlation(of_lengths[first], of_lengths[second])
-    for statement, paper, one, other, note in (
+    for statement, paper, score, other_score, note in (
         ("iterations, Q-learning and SARSA", 0.983, iterations[first], iterations[second], ""),
         ("accuracy, Q-learning and SARSA", 0.686, accuracy[first], accuracy[second], ""),
         (
@@ -170,15 +171,15 @@ def _correlation_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
         ("iterations and accuracy in Q-learning", -0.46, iterations[first], accuracy[first], ""),
         ("iterations and accuracy in SARSA", -0.33, iterations[second], accuracy[second], ""),
     ):
-        sample = [correlation(a, b) for a, b in zip(one.T, other.T, strict=True)]
+        sample = [correlation(a, b) for a, b in zip(score.T, other_score.T, strict=True)]
         yield number_claim("4.3", f"correlation of {statement}", paper, sample, note)
 
 
 def _algorithm_claims(tables: dict[str, Floats]) -> Iterator[Claim]:
     theirs = np.array(list(published().values()))
-    for column, score in enumerate(SCORES):
-        one, other = tables[score][:16], tables[score][16:]
-        differences = _mean_of_cells(other) - _mean_of_cells(one)
+    for column, score in enumerate(PAPER_SCORES):
+        q_learning, sarsa = tables[score][:16], tables[score][16:]
+        differences = _mean_of_cells(sarsa) - _mean_of_cells(q_learning)
         p = _chance(differences)
         yield measured_claim(
             "4.3",
@@ -199,11 +200,11 @@ def _mean_of_cells(table: Floats) -> Floats:
 def _figure_claims(results: Results) -> Iterator[Claim]:
     replicates = range(results.config["replicates"])
     lengths = [results.arrays(_name(_BEST), replicate)["lengths"] for replicate in replicates]
-    curves = [-moving_average(one) for one in lengths]
+    curves = [-moving_average(replicate) for replicate in lengths]
     rises = [curve[-1] > curve[0] for curve in curves]
     yield holds_claim("Figure 4", "the moving average of the rewards rises", rises)
     levels = [-_NEAR * curve[-round(_CALM * len(curve)) :].mean() for curve in curves]
-    firsts = [settled(one, level) or math.inf for one, level in zip(lengths, levels, strict=True)]
+    firsts = [settled(replicate, level) or math.inf for replicate, level in zip(lengths, levels, strict=True)]
     last = (1.0 - _CALM) * len(lengths[0])
     yield measured_claim(
         "Figure 4",

@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from arena.common.npz import Floats
 from arena.common.plain import without_nan
 from arena.reproduction.published_values import MINIMUM_ACCURACY, Key, published
 from arena.results.records import RunRecord
@@ -90,8 +90,7 @@ def _cell(key: Key, runs: list[RunRecord], accuracy: float, mean_length: float, 
     return Cell(*key, *ours, accuracy, mean_length, iterations)
 
 
-SCORES = ("accuracy", "mean_length", "iterations")
-Floats = NDArray[np.float64]
+PAPER_SCORES = ("accuracy", "mean_length", "iterations")
 
 
 def paper_tables(results: Results) -> dict[str, Floats]:
@@ -119,7 +118,7 @@ def paper_tables(results: Results) -> dict[str, Floats]:
             [[getattr(runs[key, replicate], score) for replicate in range(count)] for key in cells],
             dtype=float,
         )
-        for score in SCORES
+        for score in PAPER_SCORES
     }
 
 

@@ -5,12 +5,12 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from arena.common.npz import Floats
 from arena.common.plain import without_nan
 
 REPRODUCED, NOT_REPRODUCED, NOT_TESTABLE = "reproduced", "not reproduced", "not testable"
-Floats = NDArray[np.float64]
 CENTRAL = 95.0  # percent of our replicates that a number must be among to be reproduced
 
 
@@ -41,19 +41,19 @@ class Claim:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None."""
-        found: dict[str, Any] = without_nan(asdict(self))
-        return found
+        plain_claim: dict[str, Any] = without_nan(asdict(self))
+        return plain_claim
 
 
 def number_claim(section: str, statement: str, paper: float, sample: ArrayLike, note: str = "") -> Claim:
     """A number: reproduced if it is among the central 95% of ours, as one more replicate would be."""
-    found = _known(sample)
-    if not len(found):
-        return untestable_claim(section, statement, paper, found, "none of our replicates has such a number")
-    low, high = _central(found)
-    percentile = 100.0 * (np.mean(found < paper) + np.mean(found == paper) / 2.0)
+    known = _known(sample)
+    if not len(known):
+        return untestable_claim(section, statement, paper, known, "none of our replicates has such a number")
+    low, high = _central(known)
+    percentile = 100.0 * (np.mean(known < paper) + np.mean(known == paper) / 2.0)
     verdict = REPRODUCED if low <= paper <= high else NOT_REPRODUCED
-    return Claim(section, statement, paper, float(found.mean()), low, high, float(percentile), verdict, note)
+    return Claim(section, statement, paper, float(known.mean()), low, high, float(percentile), verdict, note)
 
 
 def holds_claim(section: str, statement: str, sample: ArrayLike, note: str = "") -> Claim:
@@ -78,16 +78,16 @@ def untestable_claim(section: str, statement: str, paper: float, sample: ArrayLi
 
 
 def _estimates(sample: ArrayLike) -> tuple[float, float, float]:
-    found = _known(sample)
-    return (float(found.mean()), *_central(found)) if len(found) else (math.nan, math.nan, math.nan)
+    known = _known(sample)
+    return (float(known.mean()), *_central(known)) if len(known) else (math.nan, math.nan, math.nan)
 
 
 def _known(sample: ArrayLike) -> Floats:
-    found: Floats = np.asarray(sample, dtype=float)
-    return found[~np.isnan(found)]
+    values: Floats = np.asarray(sample, dtype=float)
+    return values[~np.isnan(values)]
 
 
-def _central(found: Floats) -> tuple[float, float]:
+def _central(known: Floats) -> tuple[float, float]:
     tail = (100.0 - CENTRAL) / 2.0
-    low, high = np.percentile(found, (tail, 100.0 - tail))
+    low, high = np.percentile(known, (tail, 100.0 - tail))
     return float(low), float(high)

@@ -55,17 +55,20 @@ class WalkStudy:
     @property
     def verdicts(self) -> list[str]:
         """What follows, a sentence or two each."""
-        found = [_given_up(walk, one) for walk, one in zip(self.walks, self.summaries) if one.given_up]
+        claims = [
+            _given_up(walk, summary) for walk, summary in zip(self.walks, self.summaries) if summary.given_up
+        ]
         if self.on_the_papers_hill:
-            found += [_integrator(walk, one) for walk, one in zip(self.walks, self.summaries)]
-        return found + ([_distribution(self.fits)] if self.fits else [])
+            claims += [_integrator(walk, summary) for walk, summary in zip(self.walks, self.summaries)]
+        return claims + ([_distribution(self.fits)] if self.fits else [])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values: those of the first walk, then what was made of them."""
         return {
             **self.walks[0].to_dict(),
             "summaries": {
-                walk.hill.integrator.label: asdict(one) for walk, one in zip(self.walks, self.summaries)
+                walk.hill.integrator.label: asdict(summary)
+                for walk, summary in zip(self.walks, self.summaries)
             },
             "fits": [fit.to_dict() for fit in self.fits],
             "verdicts": self.verdicts,

@@ -15,26 +15,26 @@ from arena.plugins.loading import source_of
 def versions() -> dict[str, str]:
     """Versions of what computes the results."""
     packages = ["mountain-car-arena", "numpy", "numba", "pettingzoo", "gymnasium", "joblib"]
-    found = {"python": platform.python_version(), "platform": platform.platform()}
+    environment = {"python": platform.python_version(), "platform": platform.platform()}
     for package in packages:
         try:
-            found[package] = metadata.version(package)
+            environment[package] = metadata.version(package)
         except metadata.PackageNotFoundError:
-            found[package] = "not installed"
-    return found
+            environment[package] = "not installed"
+    return environment
 
 
 def source_digests(agents: Iterable[type[Any]]) -> dict[str, str]:
     """A hash of each agent's code, of a plugin's whole file, by its name; empty where it is not found."""
-    found = {}
+    digests = {}
     for agent in agents:
         plugins = source_of(agent)
         try:
             code = "".join(plugin.text for plugin in plugins) or inspect.getsource(_written(agent))
         except (OSError, TypeError):  # typed in at a prompt
             code = ""
-        found[agent_name(agent)] = hashlib.sha256(code.encode()).hexdigest() if code else ""
-    return found
+        digests[agent_name(agent)] = hashlib.sha256(code.encode()).hexdigest() if code else ""
+    return digests
 
 
 def _written(agent: type[Any]) -> type[Any]:

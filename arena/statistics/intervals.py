@@ -28,14 +28,14 @@ def mean_interval(values: Iterable[float], confidence: float = 0.95) -> tuple[fl
     """
     from scipy.special import stdtrit
 
-    found = np.asarray([value for value in values if not math.isnan(value)], dtype=float)
-    if not len(found):
+    known = np.asarray([value for value in values if not math.isnan(value)], dtype=float)
+    if not len(known):
         return math.nan, math.nan
-    mean = float(found.mean())
-    if len(found) < 2:
+    mean = float(known.mean())
+    if len(known) < 2:
         return mean, math.nan
-    error = float(found.std(ddof=1)) / math.sqrt(len(found))
-    return mean, float(stdtrit(len(found) - 1, 0.5 + confidence / 2.0)) * error
+    error = float(known.std(ddof=1)) / math.sqrt(len(known))
+    return mean, float(stdtrit(len(known) - 1, 0.5 + confidence / 2.0)) * error
 
 
 def mean_estimate(values: Iterable[float], confidence: float = 0.95) -> Estimate:
@@ -61,8 +61,8 @@ def interquartile_mean(values: ArrayLike, axis: int = -1) -> NDArray[np.float64]
     """
     ordered = np.sort(np.moveaxis(np.asarray(values, dtype=float), axis, -1), axis=-1)
     count = ordered.shape[-1]
-    found: NDArray[np.float64] = ordered[..., count // 4 : count - count // 4].mean(axis=-1)
-    return found
+    middle: NDArray[np.float64] = ordered[..., count // 4 : count - count // 4].mean(axis=-1)
+    return middle
 
 
 def bootstrap_interval(
@@ -87,15 +87,15 @@ def bootstrap_interval(
     """
     from scipy.special import ndtr, stdtrit
 
-    found = np.asarray(values, dtype=float)
-    if not len(found):
+    sample = np.asarray(values, dtype=float)
+    if not len(sample):
         return Estimate(math.nan, math.nan, math.nan)
-    value = float(statistic(found, axis=-1))
-    if len(found) < 2:
+    value = float(statistic(sample, axis=-1))
+    if len(sample) < 2:
         return Estimate(value, math.nan, math.nan)
-    drawn = np.random.default_rng(seed).integers(len(found), size=(RESAMPLES, len(found)))
-    tail = float(ndtr(-stdtrit(len(found) - 1, 0.5 + confidence / 2.0)))
-    low, high = np.quantile(statistic(found[drawn], axis=-1), [tail, 1.0 - tail])
+    drawn = np.random.default_rng(seed).integers(len(sample), size=(RESAMPLES, len(sample)))
+    tail = float(ndtr(-stdtrit(len(sample) - 1, 0.5 + confidence / 2.0)))
+    low, high = np.quantile(statistic(sample[drawn], axis=-1), [tail, 1.0 - tail])
     return Estimate(value, float(low), float(high))
 
 

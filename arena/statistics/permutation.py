@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from arena.common.npz import Floats
 
 EXACT = 17  # replicates up to which all sign flips are tried
 FLIPS = 2 ** (EXACT - 1) - 1  # that are drawn beyond
 _CHUNK = 4096
-Floats = NDArray[np.float64]
 
 
 def paired_permutation_test(x: ArrayLike, y: ArrayLike, *, one_sided: bool = False, seed: int = 0) -> float:
@@ -51,8 +52,8 @@ def sign_flip_test(differences: ArrayLike, *, one_sided: bool = False, seed: int
         else:
             hits += (np.abs(sums) >= np.abs(observed) - tolerance).sum(axis=0)
         tried += len(signs)
-    found: Floats = hits / tried if count <= EXACT else (hits + 1.0) / (tried + 1.0)
-    return found
+    p: Floats = hits / tried if count <= EXACT else (hits + 1.0) / (tried + 1.0)
+    return p
 
 
 def smallest_p(replicates: int, *, one_sided: bool = False) -> float:
@@ -89,9 +90,9 @@ def holm(p_values: ArrayLike) -> Floats:
     p = np.asarray(p_values, dtype=float)
     order = np.argsort(p, kind="stable")
     corrected = np.maximum.accumulate(p[order] * np.arange(len(p), 0, -1))
-    found = np.empty(len(p))
-    found[order] = np.minimum(corrected, 1.0)
-    return found
+    adjusted = np.empty(len(p))
+    adjusted[order] = np.minimum(corrected, 1.0)
+    return adjusted
 
 
 def is_significant(p: Any, level: float) -> Any:

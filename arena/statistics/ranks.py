@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from arena.common.npz import Floats
 from arena.statistics.intervals import RESAMPLES
-from arena.statistics.permutation import Floats, holm, is_significant, sign_flip_test
+from arena.statistics.permutation import holm, is_significant, sign_flip_test
 
 
 def rank_distribution(costs: ArrayLike, seed: int = 0) -> Floats:
@@ -27,8 +28,8 @@ def rank_distribution(costs: ArrayLike, seed: int = 0) -> Floats:
     for place, sign in ((first, 1.0), (last + 1, -1.0)):
         changes += sign * np.bincount((order * (entrants + 1) + place).ravel(), share.ravel(), len(changes))
     taken = changes.reshape(entrants, entrants + 1)[:, :-1].cumsum(axis=1)
-    found: Floats = np.round(taken / RESAMPLES, 12) + 0.0  # what rounding left of nothing is nothing
-    return found
+    shares: Floats = np.round(taken / RESAMPLES, 12) + 0.0  # what rounding left of nothing is nothing
+    return shares
 
 
 def _runs(ordered: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

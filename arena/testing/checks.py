@@ -120,9 +120,9 @@ def check_survives_hostile_transitions(entrant: Entrant) -> None:
     for step in range(_HOSTILE):
         here, there = (places[rng.integers(len(places))] for _ in range(2))
         action = _valid(agent.act(here, step / _HOSTILE, rng), f"act({here})")
-        following = _valid(agent.act(there, step / _HOSTILE, rng), f"act({there})")
+        next_action = _valid(agent.act(there, step / _HOSTILE, rng), f"act({there})")
         ended = bool(rng.random() < 0.05)
-        agent.learn(here, action, -1.0, there, following, ended)
+        agent.learn(here, action, -1.0, there, next_action, ended)
         if ended or rng.random() < 0.02:
             hook.begin_episode()
     for name, array in agent_arrays(agent).items():
@@ -150,8 +150,8 @@ def _race(entrant: Entrant, seed: int = 7) -> Outcome:
     return _finished(outcome)
 
 
-def _same(one: Outcome, other: Outcome, what: str) -> None:
-    _hold(one.arrays == _finished(other).arrays, f"{what} leaves other bits")
+def _same(first: Outcome, second: Outcome, what: str) -> None:
+    _hold(first.arrays == _finished(second).arrays, f"{what} leaves other bits")
 
 
 def _finished(outcome: Outcome) -> Outcome:
@@ -186,10 +186,10 @@ def _drive(entrant: Entrant) -> tuple[Any, list[tuple[Any, int]]]:
             before = np.array(_HILL.observe(state))
             state, reward, terminated = _HILL.step(state, action)
             after = np.array(_HILL.observe(state))
-            following = agent.act(after, 0.5, rng)
-            agent.learn(before, action, reward, after, following, terminated)
+            next_action = agent.act(after, 0.5, rng)
+            agent.learn(before, action, reward, after, next_action, terminated)
             steps.append((before, action))
-            action = following
+            action = next_action
             if terminated:
                 break
     return agent, steps

@@ -58,7 +58,7 @@ class Conditions:
     Attributes:
         hill, training, evaluation, seed: the tournament's.
         checkpoints: folder where long runs are saved; None if they are not.
-        checkpoint_seconds: time between two of a run's checkpoints.
+        checkpoint_seconds: time between two of a run's checkpoints; 0 is one after each episode.
     """
 
     hill: Hill

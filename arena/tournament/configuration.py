@@ -82,7 +82,7 @@ def from_dict(content: Mapping[str, Any], folder: Path = Path()) -> Tournament:
     tables = arguments.pop("entrants", [])
     if not isinstance(tables, list):
         raise InvalidTypeError(f"entrants must be a list of tables, got {tables!r}")
-    return Tournament(tuple(one for table in tables for one in _entrants(table, broken)), **arguments)
+    return Tournament(tuple(entrant for table in tables for entrant in _entrants(table, broken)), **arguments)
 
 
 def _load_plugins(plugins: Any, folder: Path) -> list[PluginError]:
@@ -127,11 +127,11 @@ def _agent(name: Any, broken: list[PluginError]) -> type[Any]:
     except InvalidValueError:
         if not broken or not isinstance(name, str) or not name.isprintable():
             raise
-    known = {*all_agents()[0]}.union(*(one.agents or () for one in broken))
-    unread = any(one.agents is None for one in broken)
+    known = {*all_agents()[0]}.union(*(plugin.agents or () for plugin in broken))
+    unread = any(plugin.agents is None for plugin in broken)
     if name not in known and not unread and get_close_matches(name, known, n=1):
         choice("agent", name, known)
-    reasons = [str(one) for one in broken if name in (one.agents or ())] or map(str, broken)
+    reasons = [str(plugin) for plugin in broken if name in (plugin.agents or ())] or map(str, broken)
     return unavailable(name, f"agent {name!r} is not available: {'; '.join(reasons)}")
 
 

@@ -26,5 +26,5 @@ def find_hill(name: str) -> Hill:
         )
     content = read_toml(name)
     with naming(name):
-        found: Hill = build("hill", Hill, content.get("hill"))
-    return found
+        hill: Hill = build("hill", Hill, content.get("hill"))
+    return hill

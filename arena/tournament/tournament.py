@@ -132,14 +132,14 @@ class Tournament:
 
 
 def _entrants(entrants: Iterable[Any]) -> tuple[Entrant, ...]:
-    found = tuple(entrants) if isinstance(entrants, Iterable) else (entrants,)
-    for entrant in found:
+    named = tuple(entrants) if isinstance(entrants, Iterable) else (entrants,)
+    for entrant in named:
         if not isinstance(entrant, Entrant):
             raise InvalidTypeError(f"entrants must be Entrant objects, got {entrant!r}")
-    names = [entrant.name for entrant in found]
+    names = [entrant.name for entrant in named]
     if not names:
         raise InvalidValueError("entrants must be one or more, got none")
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
         raise InvalidValueError(f"entrants must have names that differ, got {twice!r} twice")
-    return found
+    return named

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from arena.common.npz import Floats
 from arena.common.parallel import parallel_map_unordered
 from envs.foundation.checks import integer
 from envs.foundation.errors import InvalidValueError
 from envs.foundation.streams import stream
 
-Floats = NDArray[np.float64]
 BOOTSTRAPS = 199
 _WIDEST = 1e6  # of the shapes that are looked for
 

@@ -64,23 +64,23 @@ def walk(
         bounds: least and greatest position, least and greatest velocity: widened in place, shape (4,).
     """
     episodes = len(lengths)
-    one, other, following = 0, 1, 2
-    one_rng, other_rng = rngs[0], rngs[1]
-    one_walk, other_walk = start(hill, one_rng), start(hill, other_rng)
-    while one < episodes or other < episodes:
-        one_state, _, one_there = hill.step(one_walk.state, int(one_rng.random() * n_actions))
-        other_state, _, other_there = hill.step(other_walk.state, int(other_rng.random() * n_actions))
-        one_walk, other_walk = one_walk.after(one_state), other_walk.after(other_state)
-        if one_there or one_walk.steps == max_steps:
-            record(one, one_walk, one_there, lengths, reached, bounds)
-            one, following = following, following + 1
-            one_rng = rngs[min(one, episodes)]
-            one_walk = start(hill, one_rng)
-        if other_there or other_walk.steps == max_steps:
-            record(other, other_walk, other_there, lengths, reached, bounds)
-            other, following = following, following + 1
-            other_rng = rngs[min(other, episodes)]
-            other_walk = start(hill, other_rng)
+    first, second, next_episode = 0, 1, 2
+    first_rng, second_rng = rngs[0], rngs[1]
+    first_walk, second_walk = start(hill, first_rng), start(hill, second_rng)
+    while first < episodes or second < episodes:
+        first_state, _, first_there = hill.step(first_walk.state, int(first_rng.random() * n_actions))
+        second_state, _, second_there = hill.step(second_walk.state, int(second_rng.random() * n_actions))
+        first_walk, second_walk = first_walk.after(first_state), second_walk.after(second_state)
+        if first_there or first_walk.steps == max_steps:
+            record(first, first_walk, first_there, lengths, reached, bounds)
+            first, next_episode = next_episode, next_episode + 1
+            first_rng = rngs[min(first, episodes)]
+            first_walk = start(hill, first_rng)
+        if second_there or second_walk.steps == max_steps:
+            record(second, second_walk, second_there, lengths, reached, bounds)
+            second, next_episode = next_episode, next_episode + 1
+            second_rng = rngs[min(second, episodes)]
+            second_walk = start(hill, second_rng)
 
 
 def record(

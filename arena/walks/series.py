@@ -118,9 +118,9 @@ def _joined(hill: Hill, seed: int, limit: int, parts: dict[int, _Part]) -> Rando
     for place, first in enumerate(sorted(parts)):
         if first != place * TOGETHER:
             break
-        _, steps, there, found = parts[first]
+        _, steps, there, more_bounds = parts[first]
         lengths, reached = np.append(lengths, steps), np.append(reached, there)
-        bounds = np.vstack([bounds, found])
+        bounds = np.vstack([bounds, more_bounds])
     least_x, _, least_v, _ = map(float, bounds.min(axis=0))
     _, most_x, _, most_v = map(float, bounds.max(axis=0))
     return RandomWalk(hill, seed, limit, lengths, reached, (least_x, most_x), (least_v, most_v))

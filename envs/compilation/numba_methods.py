@@ -49,8 +49,8 @@ def _register_attributes() -> None:
 
                 def generic(self, args: Any, kws: Any) -> Any:
                     function = self.context.resolve_value_type(method)
-                    found = function.get_call_type(self.context, (typ, *args), kws)
-                    return found.replace(pysig=inspect.signature(method)).as_method()
+                    call_type = function.get_call_type(self.context, (typ, *args), kws)
+                    return call_type.replace(pysig=inspect.signature(method)).as_method()
 
             return types.BoundFunction(Call, typ)
 

@@ -42,22 +42,22 @@ class ReachableCode:
         """A digest that changes with any code, constant or type that would be compiled in."""
         return hashlib.sha256("\n".join(sorted(self._facts)).encode()).hexdigest()[:32]
 
-    def _visit(self, found: object) -> None:
-        if id(found) in self._seen:
+    def _visit(self, value: object) -> None:
+        if id(value) in self._seen:
             return
-        self._seen.add(id(found))
-        if isinstance(found, type):
-            self._visit_class(found)
-        elif isinstance(found, types.FunctionType):
-            if not _foreign(found):
-                self.functions.append(found)
-                self._visit_code(found)
-        elif hasattr(found, "py_func"):  # compiled by its author with numba.njit
-            self._visit_code(found.py_func)
-        elif hasattr(found, "_fields"):
-            self._visit_class(type(found))
-            for value in found:  # type: ignore[attr-defined]  # a named tuple
-                self._visit(value)
+        self._seen.add(id(value))
+        if isinstance(value, type):
+            self._visit_class(value)
+        elif isinstance(value, types.FunctionType):
+            if not _foreign(value):
+                self.functions.append(value)
+                self._visit_code(value)
+        elif hasattr(value, "py_func"):  # compiled by its author with numba.njit
+            self._visit_code(value.py_func)
+        elif hasattr(value, "_fields"):
+            self._visit_class(type(value))
+            for field in value:  # type: ignore[attr-defined]  # a named tuple
+                self._visit(field)
 
     def _visit_class(self, cls: type) -> None:
         if _foreign(cls):
@@ -79,25 +79,25 @@ class ReachableCode:
         )
         for cell in cells:
             self._visit(cell)
-        for found, name in _globals(function):
-            if _constant(found):
-                self._facts.add(f"{_name(function)}: {name} = {_literal(found)}")
+        for value, name in _globals(function):
+            if _constant(value):
+                self._facts.add(f"{_name(function)}: {name} = {_literal(value)}")
             else:
-                self._visit(found)
+                self._visit(value)
 
 
 def module_code(module: types.ModuleType) -> str:
     """A digest of the functions, and the methods of the classes, that ``module`` defines."""
-    found: set[str] = set()
-    pending = [one for one in vars(module).values() if getattr(one, "__module__", "") == module.__name__]
+    digests: set[str] = set()
+    pending = [part for part in vars(module).values() if getattr(part, "__module__", "") == module.__name__]
     while pending:
-        one = inspect.unwrap(pending.pop())
-        if isinstance(one, type):
-            members = (getattr(part, "__func__", getattr(part, "fget", part)) for part in vars(one).values())
-            pending += [part for part in members if isinstance(part, types.FunctionType)]
-        elif isinstance(one, types.FunctionType):
-            found.add(f"{_name(one)}: {_code(one.__code__)}")
-    return hashlib.sha256("\n".join(sorted(found)).encode()).hexdigest()
+        part = inspect.unwrap(pending.pop())
+        if isinstance(part, type):
+            members = (getattr(m, "__func__", getattr(m, "fget", m)) for m in vars(part).values())
+            pending += [member for member in members if isinstance(member, types.FunctionType)]
+        elif isinstance(part, types.FunctionType):
+            digests.add(f"{_name(part)}: {_code(part.__code__)}")
+    return hashlib.sha256("\n".join(sorted(digests)).encode()).hexdigest()
 
 
 def structure(value: object) -> str:
@@ -116,12 +116,12 @@ def _globals(function: types.FunctionType) -> Iterator[tuple[object, str]]:
     while modules:
         namespace = modules.pop()
         for name in sorted(names & namespace.keys()):
-            found = namespace[name]
-            if isinstance(found, types.ModuleType):
-                if found.__name__.partition(".")[0] not in _FOREIGN and id(vars(found)) != id(namespace):
-                    modules.append(vars(found))
+            value = namespace[name]
+            if isinstance(value, types.ModuleType):
+                if value.__name__.partition(".")[0] not in _FOREIGN and id(vars(value)) != id(namespace):
+                    modules.append(vars(value))
             else:
-                yield found, name
+                yield value, name
 
 
 def _names(code: types.CodeType) -> Iterator[str]:
@@ -148,9 +148,9 @@ def _constant(value: object) -> bool:
     return isinstance(value, (bool, int, float, complex, str, bytes, tuple, np.ndarray, np.generic))
 
 
-def _foreign(found: Any) -> bool:
-    return (getattr(found, "__module__", None) or "builtins").partition(".")[0] in _FOREIGN
+def _foreign(definition: Any) -> bool:
+    return (getattr(definition, "__module__", None) or "builtins").partition(".")[0] in _FOREIGN
 
 
-def _name(found: Any) -> str:
-    return f"{found.__module__}.{found.__qualname__}"
+def _name(definition: Any) -> str:
+    return f"{definition.__module__}.{definition.__qualname__}"

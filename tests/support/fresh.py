@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-_COMMAND = "import sys; from arena.cli import main; assert main(sys.argv[1:]) == 0"
+COMMAND = "import sys; from arena.cli import main; assert main(sys.argv[1:]) == 0"
 
 
 def output_of(code: str, *arguments: str, cwd: Path | None = None) -> str:
@@ -22,4 +22,4 @@ def modules_after(code: str, *arguments: str) -> set[str]:
 
 def modules_of_command(*arguments: str) -> set[str]:
     """Those that the command ``arena`` needs with these arguments."""
-    return modules_after(_COMMAND, *arguments)
+    return modules_after(COMMAND, *arguments)

@@ -5,10 +5,12 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from fresh import modules_after, modules_of_command
+from fresh import COMMAND, modules_after, modules_of_command, output_of
 from made_up_results import made_up
 
-from arena import paper
+from agents import Sarsa
+from agents.optimal import Optimal
+from arena import Entrant, Evaluation, Tournament, Training, paper, run
 from arena.cli import main
 from arena.results.store import Store
 from arena.tournament.outcome import Outcome, Status
@@ -72,6 +74,23 @@ def test_a_leaderboard_is_shown_without_compiler_workers_and_figures(file: str) 
         loaded = modules_of_command("show", file, *arguments)
         assert "arena.analysis.standings" in loaded
         assert loaded & UNNEEDED == set()
+
+
+def test_in_a_terminal_a_planner_that_leads_is_not_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "race.sqlite"
+    tournament = Tournament(
+        (Entrant("optimal", Optimal, bins=60), Entrant("sarsa", Sarsa)),
+        training=Training(60, 300),
+        evaluation=Evaluation(2, 300),
+    )
+    run(tournament, path, n_jobs=1).close()
+    monkeypatch.setenv("FORCE_COLOR", "1")  # rich takes this for a terminal
+    loaded = modules_of_command("show", str(path))
+    assert {"arena.report.sparklines", "agents.optimal.driver"} <= loaded
+    assert loaded & UNNEEDED == set()
+    assert "Policy of sarsa" in output_of(COMMAND, "show", str(path))
 
 
 def test_the_paper_s_tables_are_shown_without_compiler_workers_and_figures(

@@ -34,7 +34,7 @@ parameters = { bins = 9 }
 
 def start(folder: Path, file: str) -> subprocess.Popen[bytes]:
     """The tournament, begun or continued, in a process of its own."""
-    command = [sys.executable, "-m", "arena", "run", "race.toml", "--jobs", "2", "--out", file]
+    command = [sys.executable, "-m", "arena", "run", "race.toml", "--jobs", "2", "--no-report", "--out", file]
     with (folder / "said").open("wb") as said:
         return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=said)
 

@@ -132,6 +132,7 @@ def test_ties_are_counted_anew_for_each_greater_value(values: list[float], share
     assert np.bincount(chosen, minlength=len(values)) / 10_000 == pytest.approx(shares, abs=0.02)
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("hill", [Hill(), Hill(max_position=0.5, goal_position=-0.35)], ids=["far", "near"])
 def test_both_drivers_get_the_same_bits(hill: Hill) -> None:
     entrants = [Entrant(name, cls, **given) for name, (cls, given) in zip(NAMES, SETTINGS)]
@@ -150,6 +151,7 @@ def test_both_drivers_get_the_same_bits(hill: Hill) -> None:
         assert np.count_nonzero(kept["weights"]) > 50
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(("cls", "given"), SETTINGS, ids=NAMES)
 def test_compiled_agents_allocate_nothing(cls: type[Any], given: dict[str, Any]) -> None:
     assert_allocates_nothing(cls, given)

@@ -3,6 +3,7 @@
 import ast
 import json
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -28,21 +29,29 @@ def succeed(*arguments: str, cwd: Path) -> str:
     return done.stdout
 
 
-def blocks(language: str) -> list[object]:
-    """The code blocks of all pages in ``language``, as parameters of a test."""
+def blocks(language: str, pages: list[Path] = PAGES) -> list[object]:
+    """The code blocks of the pages in ``language``, as parameters of a test."""
     return [
         pytest.param(code, id=f"{page.name}-{number}")
-        for page in PAGES
+        for page in pages
         if page != SESSION
         for number, code in enumerate(re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL))
     ]
 
 
 @pytest.mark.docs
-@pytest.mark.parametrize("code", blocks("python"))
-def test_python_examples_run(code: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("code", blocks("python", PAGES[:1]))
+def test_python_examples_of_the_readme_run_as_scripts(code: str, tmp_path: Path) -> None:
     (tmp_path / "example.py").write_text(code)
     succeed("-W", "error::DeprecationWarning:__main__", "example.py", cwd=tmp_path)
+
+
+@pytest.mark.docs
+@pytest.mark.parametrize("code", blocks("python", PAGES[1:]))
+def test_python_examples_of_the_docs_run(code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("example.py").write_text(code)
+    runpy.run_path("example.py", run_name="__main__")  # starting Python and its workers would take longer
 
 
 @pytest.mark.parametrize("code", blocks("toml"))

@@ -42,9 +42,18 @@ class Good(NamedTuple):
         return 2 if observation[1] >= 0.0 else 0
 
 
-class ChoosesThree(Good):
-    __slots__ = ()
+class Plain:
+    """As good, but no named tuple: it runs interpreted, so nothing is compiled for it."""
 
+    def __init__(self) -> None:
+        self.values, self.n_actions = np.zeros(3), 3
+
+    act = Good.act
+    learn = Good.learn
+    greedy = Good.greedy
+
+
+class ChoosesThree(Plain):
     def act(self, observation: Any, progress: float, rng: np.random.Generator) -> Any:
         return int(rng.random() * 3.5)
 
@@ -63,9 +72,7 @@ class ReturnsFloat(Good):
         return np.sign(observation[1]) + 1.0
 
 
-class ReturnsBool(Good):
-    __slots__ = ()
-
+class ReturnsBool(Plain):
     def greedy(self, observation: Any) -> Any:
         return bool(observation[1] >= 0.0)
 
@@ -79,10 +86,8 @@ class ForgetsTheLastCell(Good):
         return [0, 0, 0, 0, 1, 1, 2, 2, 2, 2][int((observation[0] + 1.2) / (0.6 + 1.2) * 10)]
 
 
-class BreaksFarAway(Good):
+class BreaksFarAway(Plain):
     """NaN when the car jumps farther than any car can."""
-
-    __slots__ = ()
 
     def learn(
         self,
@@ -97,9 +102,7 @@ class BreaksFarAway(Good):
             self.values[action] = math.nan
 
 
-class RaisesFarAway(Good):
-    __slots__ = ()
-
+class RaisesFarAway(Plain):
     def learn(
         self,
         observation: Any,
@@ -147,31 +150,25 @@ class DrawsFromNumpy(Good):
         return int(np.random.random() * self.n_actions)  # noqa: NPY002 (on purpose)
 
 
-class DrawsFromRandom(Good):
-    __slots__ = ()
-
+class DrawsFromRandom(Plain):
     def act(self, observation: Any, progress: float, rng: np.random.Generator) -> Any:
         return int(random.random() * self.n_actions)  # noqa: S311 (on purpose)
 
 
-class DrawsInVain(Good):
+class DrawsInVain(Plain):
     """Its bits are right; those of an agent beside it would not be."""
-
-    __slots__ = ()
 
     def act(self, observation: Any, progress: float, rng: np.random.Generator) -> Any:
         np.random.random()  # noqa: NPY002 (on purpose)
         return int(rng.random() * self.n_actions)
 
 
-class DrawsOtherwiseWhenMade(Good):
+class DrawsOtherwiseWhenMade(Plain):
     """Its generator is its own, and begins anywhere."""
 
-    __slots__ = ()
-
-    @classmethod
-    def create(cls, task: Any) -> Self:
-        return cls(np.random.default_rng().random(3), task.n_actions)
+    def __init__(self) -> None:
+        super().__init__()
+        self.values = np.random.default_rng().random(3)
 
     def learn(
         self,
@@ -208,13 +205,10 @@ class DrawsAnywhere(DoesNotLearn):
         return 1
 
 
-class HoldsALock(Good):
-    __slots__ = ()
-
-    @classmethod
-    def create(cls, task: Any, *, lock: Any = LOCK) -> Self:
+class HoldsALock(Plain):
+    def __init__(self, lock: Any = LOCK) -> None:
         with lock:
-            return cls(np.zeros(task.n_actions), task.n_actions)
+            super().__init__()
 
 
 class KeepsWhatCannotBeSaved(Good):

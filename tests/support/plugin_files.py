@@ -79,6 +79,9 @@ agent = "speedy"
 agent = "plodding"
 """
 
+RUN = ("run", "race.toml", "--no-report")
+"""The command of a race without a page, which takes longer than the race."""
+
 RUN_IT = """
 from arena import *
 tournament = Tournament(

@@ -13,7 +13,6 @@ from hand_made_agents import Leaky, Scripted, race_of
 
 from agents import MomentumAgent, QLearning, RandomAgent, Sarsa
 from arena import Entrant, load, run
-from arena.execution import compiled_driver
 from arena.execution.checkpoint import Checkpoint, file_of, savable
 from arena.execution.worker import DRIVERS
 from arena.results import digest
@@ -42,8 +41,6 @@ def race(driver: str, conditions: Conditions, one: Run) -> Outcome:
 def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
     entrant: Entrant, drivers: tuple[str, str], moment: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compiled_driver, "_PIECE", 1)
-    monkeypatch.setattr(compiled_driver, "_SHORT", 0.0)
     tournament = race_of(entrant)
     one = tournament.runs[0]
     expected = race(drivers[0], tournament.conditions, one)
@@ -61,6 +58,7 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
         race(drivers[0], conditions, one)
     before = len(saved)
     found = race(drivers[1], conditions, one)
+    assert saved[:before] == list(range(saved[0], saved[0] + moment))  # after each episode
     assert min(saved[before:]) >= saved[before - 1]  # it did not begin anew
     assert found.arrays == expected.arrays
     assert (found.accuracy, found.iterations) == (expected.accuracy, expected.iterations)

@@ -94,7 +94,6 @@ def test_the_film_is_one(results: Results, tmp_path: Path) -> None:
     assert b"ftyp" in (tmp_path / "race.mp4").read_bytes()[:16]
 
 
-@pytest.mark.system
 def test_the_command_takes_names_with_and_without_the_option(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

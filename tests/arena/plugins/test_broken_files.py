@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from bits import bits_of
 from broken_plugins import BROKEN, DRIVER
-from plugin_files import RACE, from_file, python
+from plugin_files import RACE, RUN, from_file, python
 
 from agents.registry import all_agents
 from arena import load_plugin, run
@@ -82,7 +82,7 @@ def test_two_files_with_one_name_are_told_apart(capsys: pytest.CaptureFixture[st
 def test_one_file_may_be_named_twice(capsys: pytest.CaptureFixture[str]) -> None:
     Path("link.py").symlink_to("speedy.py")
     Path("race.toml").write_text(f'plugins = ["speedy.py", "./speedy.py", "link.py"]\n{RACE}')
-    assert main(["run", "race.toml", "--plugin", "speedy.py", "--jobs", "1", "--strict"]) == 0
+    assert main([*RUN, "--plugin", "speedy.py", "--jobs", "1", "--strict"]) == 0
 
 
 def test_a_file_of_which_one_agent_is_bad_registers_none() -> None:
@@ -113,9 +113,9 @@ def test_what_the_user_sees_of_a_broken_file_has_no_traceback() -> None:
     done = python("-m", "arena", "run", "race.toml", "--plugin", "bad.py")
     assert (done.returncode, done.stdout, done.stderr) == (2, "", f"arena: {message}\n")
     Path("race.toml").write_text(f"plugins = ['bad.py', 'speedy.py']\n{RACE}[[entrants]]\nagent = 'driver'\n")
-    done = python("-m", "arena", "run", "race.toml", "--jobs", "1")
+    done = python("-m", "arena", *RUN, "--jobs", "1")
     assert done.returncode == 0
     assert done.stderr.splitlines()[0] == message
     assert "Traceback" not in done.stdout + done.stderr
     assert "driver replicate 0 failed: agent 'driver' is not available: plugin bad.py" in done.stdout
-    assert python("-m", "arena", "run", "race.toml", "--jobs", "1", "--strict").returncode == 1
+    assert python("-m", "arena", *RUN, "--jobs", "1", "--strict").returncode == 1

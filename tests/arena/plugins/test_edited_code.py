@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from broken_plugins import DRIVER
 from joblib.externals.loky import get_reusable_executor
-from plugin_files import EDITS, NOTEBOOK, PLUGIN, RACE, RUN_IT, bits, from_file, python, race_between
+from plugin_files import EDITS, NOTEBOOK, PLUGIN, RACE, RUN, RUN_IT, bits, from_file, python, race_between
 
 from agents import agent_class
 from arena import Results, load, load_plugin, run
@@ -27,7 +27,7 @@ def test_an_edited_file_runs_as_in_a_fresh_process(edit: tuple[str, str]) -> Non
     Path("speedy.py").write_text(PLUGIN.replace(*edit))
     after = from_file(n_jobs=2)  # the workers are warm
     assert after != before
-    command = ["-m", "arena", "run", "race.toml", "--plugin", "speedy.py", "--jobs", "1", "--out", "r.sqlite"]
+    command = ["-m", "arena", *RUN, "--plugin", "speedy.py", "--jobs", "1", "--out", "r.sqlite"]
     assert python(*command).returncode == 0
     assert bits(load("r.sqlite")) == after
     Path("speedy.py").write_text(PLUGIN)
@@ -53,7 +53,7 @@ def test_a_file_that_is_broken_by_an_edit_does_not_run_as_it_was_before() -> Non
 
 
 def test_results_of_an_edited_plugin_are_not_mixed_with_those_of_before() -> None:
-    arguments = ["run", "race.toml", "--plugin", "speedy.py", "--jobs", "1", "--out", "r.sqlite"]
+    arguments = [*RUN, "--plugin", "speedy.py", "--jobs", "1", "--out", "r.sqlite"]
     assert main(arguments) == 0
     before = Path("r.sqlite").read_bytes()
     Path("speedy.py").write_text(PLUGIN.replace(*EDITS["a constant"]))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from broken_plugins import DRIVER
-from plugin_files import EDITS, NOTEBOOK, PLUGIN, RACE, RUN_IT, bits, from_file, python
+from plugin_files import EDITS, NOTEBOOK, PLUGIN, RACE, RUN, RUN_IT, bits, from_file, python
 
 from agents import agent_class, agent_name
 from arena import load, load_plugin
@@ -21,16 +21,14 @@ def test_a_plugin_file_gets_the_same_bits_on_two_workers_as_in_this_process() ->
 @pytest.mark.system
 def test_the_command_line_option_and_the_tournament_file_load_the_same_agents(folder: Path) -> None:
     expected = from_file()
-    done = python(
-        "-m", "arena", "run", "race.toml", "--plugin", "speedy.py", "--jobs", "2", "--out", "a.sqlite"
-    )
+    done = python("-m", "arena", *RUN, "--plugin", "speedy.py", "--jobs", "2", "--out", "a.sqlite")
     assert done.returncode == 0, done.stderr
     assert bits(load("a.sqlite")) == expected
     Path("plugins").mkdir()
     Path("speedy.py").rename("plugins/speedy.py")  # the path is relative to the file that names it
     Path("races").mkdir()
     Path("races/race.toml").write_text(f'plugins = ["../plugins/speedy.py"]\n{RACE}')
-    done = python("-m", "arena", "run", "races/race.toml", "--jobs", "2", "--out", "b.sqlite")
+    done = python("-m", "arena", "run", "races/race.toml", "--no-report", "--jobs", "2", "--out", "b.sqlite")
     assert done.returncode == 0, done.stderr
     assert bits(load("b.sqlite")) == expected
     with load("a.sqlite") as results:
@@ -103,7 +101,7 @@ def test_a_results_file_is_read_without_the_plugin_and_verified_with_it() -> Non
         f"{PLUGIN}\nopen('was-run', 'w').close()\n".replace("class Plodding", "class _P")
     )
     Path("race.toml").write_text(RACE.partition('[[entrants]]\nagent = "plodding"')[0])
-    done = python("-m", "arena", "run", "race.toml", "--plugin", "speedy.py", "--jobs", "1")
+    done = python("-m", "arena", *RUN, "--plugin", "speedy.py", "--jobs", "1")
     assert done.returncode == 0, done.stderr
     file = "runs/race.sqlite"
     Path("was-run").unlink()

@@ -92,7 +92,7 @@ def test_an_installed_agent_passes_the_contract_suite(installed: Path, tmp_path:
 
 def test_an_installed_agent_races_compiled_on_two_workers(installed: Path, tmp_path: Path) -> None:
     (tmp_path / "race.toml").write_text(RACE)
-    done = arena(installed, tmp_path, "run", "race.toml", "--jobs", "2")
+    done = arena(installed, tmp_path, "run", "race.toml", "--no-report", "--jobs", "2")
     assert (done.returncode, done.stderr) == (0, "")
     for name in ("calm", "wild", "sarsa"):
         assert re.search(rf"^.* {name} +\d.*$", done.stdout, re.MULTILINE)  # the leaderboard's row
@@ -107,7 +107,7 @@ def test_an_installed_agent_races_compiled_on_two_workers(installed: Path, tmp_p
 
 def test_of_a_broken_agent_of_a_package_only_the_entrants_fail(installed: Path, tmp_path: Path) -> None:
     (tmp_path / "race.toml").write_text(RACE.replace("pendulum", "crasher", 1))
-    done = arena(installed, tmp_path, "run", "race.toml", "--jobs", "1")
+    done = arena(installed, tmp_path, "run", "race.toml", "--no-report", "--jobs", "1")
     assert (done.returncode, done.stderr) == (0, f"{REFUSED[0]}\n")
     assert f"calm replicate 0 failed: {REFUSED[0]}" in done.stdout
     with load(tmp_path / "runs" / "race.sqlite") as results:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from broken_plugins import DRIVER
-from plugin_files import RACE
+from plugin_files import RACE, RUN
 
 from agents import agent_class
 from agents.parameters import parameters_of
@@ -105,7 +105,7 @@ def test_any_default_is_accepted_made_in_the_worker_and_verified(capsys: pytest.
     (entrant,) = load_tournament("race.toml").entrants
     assert set(entrant.parameters) == {"limit", "seed", "spring"}
     assert not [one for one in findings(entrant) if one.status == "failed"]
-    assert main(["run", "race.toml", "--jobs", "2", "--out", "r.sqlite"]) == 0
+    assert main([*RUN, "--jobs", "2", "--out", "r.sqlite"]) == 0
     with load("r.sqlite") as results:
         assert results.arrays("driver")["counts"].sum() == results.runs[0]["iterations"]
     capsys.readouterr()

@@ -67,13 +67,13 @@ def test_its_test_passes_where_its_author_runs_it() -> None:
     assert "FAILED test_my_agent.py::test_contract[my-agent-actions_are_valid]" in done.stdout
 
 
-@pytest.mark.system
-def test_the_command_checks_the_new_agent() -> None:
+def test_the_command_checks_the_new_agent(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new-agent", "my-agent"]) == 0
-    command = [sys.executable, "-m", "arena", "check", "my_agent.py"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.count("  ok      ") == len(CHECKS)
+    capsys.readouterr()
+    assert main(["check", "my_agent.py"]) == 0
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert printed.out.count("  ok      ") == len(CHECKS)
 
 
 @pytest.mark.parametrize("there", ["my_agent.py", "test_my_agent.py"])

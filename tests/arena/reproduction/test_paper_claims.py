@@ -4,6 +4,7 @@ import dataclasses
 import json
 import math
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -174,16 +175,23 @@ def test_walks_are_compared_series_by_series() -> None:
     assert share.verdict == "reproduced"
 
 
-@pytest.fixture
-def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A short tournament of the paper, and short series of walks."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(paper_claims, "WALKS", 10)
+@pytest.fixture(scope="module")
+def short_paper(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results file of a short tournament of the paper."""
     short = dataclasses.replace(
         paper(2), training=Training(60, 300), evaluation=Evaluation(3, 100), time_limit=None
     )
-    run(short, "paper.sqlite", n_jobs=2).close()
-    return tmp_path / "paper.sqlite"
+    path = tmp_path_factory.mktemp("paper") / "paper.sqlite"
+    run(short, path, n_jobs=2).close()
+    return path
+
+
+@pytest.fixture
+def file(short_paper: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """That file in the current folder, and short series of walks."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(paper_claims, "WALKS", 10)
+    return Path(shutil.copy(short_paper, tmp_path))
 
 
 def test_the_command_prints_a_verdict_on_each_and_writes_the_page(

@@ -201,7 +201,7 @@ def test_the_command_line(
     assert capsys.readouterr().out == text
     assert main(["verify", "runs/race.sqlite", "--runs", "2"]) == 0
     options = ["--replicates", "adaptive", "--max-replicates", "12", "--confidence", "0.9"]
-    assert main(["run", "race.toml", "--jobs", "1", "--out", "o.sqlite", *options]) == 0
+    assert main(["run", "race.toml", "--no-report", "--jobs", "1", "--out", "o.sqlite", *options]) == 0
     with load("o.sqlite") as results:
         assert (results.config["max_replicates"], results.config["confidence"]) == (12, 0.9)
     capsys.readouterr()

@@ -41,7 +41,6 @@ BAD: dict[type, dict[str, str]] = {  # each with all that is found, as a pattern
         "travels": "envs.InvalidValueError: action must be less than 3, got 3",
         "evaluation does not learn": "IndexError: index 3 is out of bounds",
         "saves and loads": "IndexError: index 3 is out of bounds",
-        "compiled is interpreted": "ValueError: action must be one of the hill's",
     },
     ChoosesMinusOne: {
         "actions are valid": r"greedy\(\[.*\]\) must be less than 3 and not negative, got -1",
@@ -65,7 +64,6 @@ BAD: dict[type, dict[str, str]] = {  # each with all that is found, as a pattern
         "same seed same bits": "envs.InvalidTypeError: action must be an integer, got (True|False)",
         "independent of others": "envs.InvalidTypeError: action must be an integer, got (True|False)",
         "travels": "envs.InvalidTypeError: action must be an integer, got (True|False)",
-        "compiled is interpreted": "envs.InvalidTypeError: action must be an integer, got (True|False)",
     },
     ForgetsTheLastCell: {
         "actions are valid": "IndexError: list index out of range",
@@ -91,14 +89,12 @@ BAD: dict[type, dict[str, str]] = {  # each with all that is found, as a pattern
         "same seed same bits": f"a second run with the same seed {OTHER_BITS}",
         "independent of others": f"a run beside another entrant, .*{OTHER_BITS}",
         "travels": f"a run of its copy {OTHER_BITS}",
-        "compiled is interpreted": f"the compiled run {OTHER_BITS}",
     },
     DrawsInVain: {"independent of others": "it draws from the global random numbers; all must come from"},
     DrawsOtherwiseWhenMade: {
         "same seed same bits": f"a second run with the same seed {OTHER_BITS}",
         "independent of others": f"a run beside another entrant, .*{OTHER_BITS}",
         "travels": f"a run of its copy {OTHER_BITS}",
-        "compiled is interpreted": f"the compiled run {OTHER_BITS}",
     },
     SharesADictionary: {"same seed same bits": "a second run with the same seed chooses other actions"},
     DrawsAnywhere: {"same seed same bits": "a second run with the same seed chooses other actions"},

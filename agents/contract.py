@@ -10,7 +10,7 @@ The shortest way is a ``typing.NamedTuple`` of numbers and arrays with plain met
             ...
 
         def act(self, observation, progress, rng): ...
-        def learn(self, observation, action, reward, next_observation, next_action, terminated): ...
+        def learn(self, observation, action, reward, next_observation, terminated): ...
         def greedy(self, observation): ...
 
 If its methods keep to numba's subset of Python, the arena compiles them by itself. Any other class
@@ -18,7 +18,8 @@ with these methods races too, interpreted. Parts of an agent (a grid, a schedule
 with plain methods as well. A field must not have the name of a method.
 """
 
-from collections.abc import Sequence
+import inspect
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -26,6 +27,9 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+TRANSITION = ("observation", "action", "reward", "next_observation", "terminated")
+"""What ``learn`` gets, beside ``next_action`` if it asks for that."""
 
 Observation = Sequence[float]
 """Indexed by dimension: a tuple of floats in compiled code, an array (float64) from the environment."""
@@ -80,30 +84,46 @@ class Agent(Protocol):
             rng: the run's random stream.
         """
 
-    def learn(
-        self,
-        observation: Any,
-        action: int,
-        reward: float,
-        next_observation: Any,
-        next_action: int,
-        terminated: bool,
-    ) -> None:
+    @property
+    def learn(self) -> Callable[..., None]:
         """Learn from one transition.
 
-        Args:
-            observation: where the car was.
-            action: what it did there.
-            reward: what it got for it.
-            next_observation: where that led.
-            next_action: what ``act`` chose there *before* this update, and what is then done.
-                SARSA uses it, Q-learning does not.
-            terminated: whether the goal was reached. A time limit does not terminate: the value
-                of the next observation still counts.
+        A method that takes, in this order, with ``next_action`` or without it,
+
+        - ``observation``: where the car was;
+        - ``action``: what it did there;
+        - ``reward``: what it got for it;
+        - ``next_observation``: where that led;
+        - ``next_action``: what it does there;
+        - ``terminated``: whether the goal was reached. A time limit does not terminate: the value of the
+          next observation still counts.
+
+        The parameter ``next_action`` decides when ``act`` is asked for it. If ``learn`` has it, before this
+        update, also where the episode ends: so SARSA has it (Sutton & Barto 2018, 6.4). If not, after it, and
+        only where a step follows: so Q-learning has it (6.5), which drives by what it has just learned.
         """
 
     def greedy(self, observation: Any) -> int:
         """The policy that is evaluated. It must not learn."""
+
+
+def learns_with_next_action(agent: Any) -> bool:
+    """Whether the agent's ``learn`` has the parameter ``next_action``, see ``Agent.learn``.
+
+    One that calls it otherwise has it where it takes any number of arguments, or one more than without it.
+    """
+    try:
+        signature = inspect.signature(agent.learn)
+    except ValueError:  # not written in Python
+        return True
+    kinds = {parameter.kind for parameter in signature.parameters.values()}
+    if "next_action" in signature.parameters or inspect.Parameter.VAR_POSITIONAL in kinds:
+        return True
+    try:
+        signature.bind(*TRANSITION)
+    except TypeError:
+        return True
+    return False
 
 
 class HasEpisodes(Protocol):

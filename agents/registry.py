@@ -5,7 +5,7 @@ those that this process registers.
 """
 
 import inspect
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -29,7 +29,6 @@ from agents.algorithms.tutorial import TutorialQLearning
 from agents.algorithms.value_iteration import ValueIteration
 from agents.algorithms.watkins_q_lambda import WatkinsQLambda
 from agents.baselines import MomentumAgent, RandomAgent, XiaoAgent
-from agents.contract import Agent
 from agents.optimal.driver import Optimal
 from envs.foundation.checks import choice
 from envs.foundation.errors import InvalidTypeError, InvalidValueError
@@ -63,8 +62,10 @@ BUILT_IN: dict[str, type[Any]] = {
 }
 
 _EITHER = inspect.Parameter.POSITIONAL_OR_KEYWORD
-_METHODS = {
-    name: tuple(inspect.signature(getattr(Agent, name)).parameters)[1:] for name in ("act", "learn", "greedy")
+_METHODS = {  # with the numbers of arguments that each may take
+    "act": ("observation, progress, rng", (3,)),
+    "learn": ("observation, action, reward, next_observation[, next_action], terminated", (6, 5)),
+    "greedy": ("observation", (1,)),
 }
 
 
@@ -168,23 +169,28 @@ def check_methods(agent: Any) -> None:
     """
     if not isinstance(agent, type):
         raise InvalidTypeError(f"agent must be a class, got {agent!r}")
-    for method, arguments in _METHODS.items():
+    for method, (arguments, numbers) in _METHODS.items():
         function = getattr(agent, method, None)
         if not callable(function):
             raise InvalidTypeError(
                 f"agent must have the methods {', '.join(_METHODS)}; {agent.__name__} lacks {method}"
             )
-        try:
-            inspect.signature(function).bind(None, *arguments)
-        except TypeError:
+        if not any(_takes(function, number + 1) for number in numbers):
             raise InvalidTypeError(
-                f"{agent.__name__}.{method} must take (self, {', '.join(arguments)}), "
-                f"got {inspect.signature(function)}"
-            ) from None
-        except ValueError:  # not written in Python
-            continue
+                f"{agent.__name__}.{method} must take (self, {arguments}), got {inspect.signature(function)}"
+            )
     if hasattr(agent, "create"):
         _check_create(agent)
+
+
+def _takes(function: Callable[..., Any], number: int) -> bool:
+    try:
+        inspect.signature(function).bind(*range(number))
+    except TypeError:
+        return False
+    except ValueError:  # not written in Python
+        return True
+    return True
 
 
 def _check_create(agent: type[Any]) -> None:

@@ -19,13 +19,13 @@ import numba
 import numpy as np
 
 from agents import Grid, QLearning, Sarsa
-from arena.execution.loops import TrainingLoop, episode_hook, train
+from arena.execution.loops import TrainingLoop, episode_hook, learning_order, train
 from envs import Hill
 from envs.compilation import compile_loop
 
 
 @numba.njit(nogil=True, error_model="numpy")
-def by_hand(q, visits, edges, scale, n_p, n_v, episodes, max_steps, starts, rng, lengths, sarsa):  # type: ignore[no-untyped-def] # noqa: C901, PLR0912
+def by_hand(q, visits, edges, scale, n_p, n_v, episodes, max_steps, starts, rng, lengths, sarsa):  # type: ignore[no-untyped-def] # noqa: PLR0915, C901, PLR0912
     """The learning loop of the paper without a call."""
     for episode in range(episodes):
         epsilon = 0.6 + (0.01 - 0.6) * (episode / episodes)
@@ -68,15 +68,24 @@ def by_hand(q, visits, edges, scale, n_p, n_v, episodes, max_steps, starts, rng,
             for a in range(1, 3):
                 if q[next_cell, a] > q[next_cell, best]:
                     best = a
-            next_action = int(rng.random() * 3) if rng.random() < epsilon else best
+            next_action = best
+            if sarsa and rng.random() < epsilon:
+                next_action = int(rng.random() * 3)
             target = -1.0
             if not done:
-                target += 0.99 * q[next_cell, next_action if sarsa else best]
+                target += 0.99 * q[next_cell, next_action]
             rate = 1.0 / (10.0 + 0.01 * visits[cell, action])
             q[cell, action] += rate * (target - q[cell, action])
             visits[cell, action] += 1
-            cell, action = next_cell, next_action
             steps += 1
+            if not sarsa and not done and steps < max_steps:  # from the new values
+                next_action = 0
+                for a in range(1, 3):
+                    if q[next_cell, a] > q[next_cell, next_action]:
+                        next_action = a
+                if rng.random() < epsilon:
+                    next_action = int(rng.random() * 3)
+            cell, action = next_cell, next_action
         lengths[episode] = steps
 
 
@@ -93,8 +102,8 @@ def compare(cls: type[Any], episodes: int, repeats: int) -> dict[str, float]:
         agent = cls.create(hill, bins=bins)
 
         def loop() -> TrainingLoop:
-            hook = episode_hook(agent)
-            return TrainingLoop(hill, agent, hook, hill.n_actions, episodes, limit, *streams(), lengths)
+            parts = hill, agent, episode_hook(agent), learning_order(agent)
+            return TrainingLoop(*parts, hill.n_actions, episodes, limit, *streams(), lengths)
 
         kernel = compile_loop(train, loop(), 0, episodes)
         return agent.values, lambda: kernel(loop(), 0, episodes)

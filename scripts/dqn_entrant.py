@@ -136,7 +136,6 @@ class SB3DQN:
         action: int,
         reward: float,
         next_observation: Any,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """Remember the transition; now and then take gradient steps on some that are remembered."""

@@ -65,7 +65,6 @@ class DoubleQLearning(TabularAgent[Twins]):
         action: int,
         reward: float,
         next_observation: Observation,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """In one table, towards the reward and the other's value of what the one deems best."""

@@ -110,7 +110,6 @@ class DynaQ(TabularAgent[Recollection]):
         action: int,
         reward: float,
         next_observation: Observation,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """As Q-learning does, then remember the step and repeat others."""

@@ -35,7 +35,6 @@ class ExpectedSarsa(TabularAgent[Floats]):
         action: int,
         reward: float,
         next_observation: Observation,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """Towards the reward and the mean value of what the exploration does in the next cell."""

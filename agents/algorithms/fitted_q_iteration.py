@@ -140,7 +140,6 @@ class FittedQIteration:
         action: int,
         reward: float,
         next_observation: Observation,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """Remember the step."""

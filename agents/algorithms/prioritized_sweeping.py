@@ -68,7 +68,6 @@ class PrioritizedSweeping(TabularAgent[Plan]):
         action: int,
         reward: float,
         next_observation: Observation,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """Count the step, then sweep its cell and those that head the queue."""

@@ -18,7 +18,6 @@ class QLearning(Tabular):
         action: int,
         reward: float,
         next_observation: Observation,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """Towards the reward and the best value of the next cell."""

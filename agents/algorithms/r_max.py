@@ -84,7 +84,6 @@ class RMax(TabularAgent[Knowledge]):
         action: int,
         reward: float,
         next_observation: Observation,
-        next_action: int,
         terminated: bool,
     ) -> None:
         """Count the step; compute all values where it completes what makes a difference."""

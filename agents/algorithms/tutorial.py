@@ -9,9 +9,9 @@ class TutorialQLearning(QLearning):
     """Q-learning with the tutorial's parameters in place of the paper's.
 
     Step size 0.1, discount 0.95, table from U(-2, 0), 20x20 cells, epsilon from 1 to 0 at half of the
-    episodes, and a goal step sets the value to 0. In one thing it differs: the tutorial makes no
-    update in the step in which the time runs out. An agent is not told of the time limit, so here
-    that step, one an episode, is learned like any other.
+    episodes, and a goal step sets the value to 0; the next action is drawn after the update. In one
+    thing it differs: the tutorial makes no update in the step in which the time runs out. An agent is
+    not told of the time limit, so here that step, one an episode, is learned like any other.
     """
 
     __slots__ = ()

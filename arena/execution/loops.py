@@ -4,14 +4,18 @@ Plain Python: the compiled driver turns them into machine code together with the
 The PettingZoo driver runs the same steps for many cars at once.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from agents.contract import Observation, learns_with_next_action
 from arena.tournament.conditions import Conditions, Run
 
 Lengths = NDArray[np.int64]
+Transition = tuple[Any, int, float, Any]  # observation, action, reward, next observation
+LearnAndAct = Callable[[Transition, bool, bool], int]  # a transition; terminated; over
 
 
 class NoEpisodeHook(NamedTuple):
@@ -28,6 +32,76 @@ def episode_hook(agent: Any) -> Any:
     return agent if hasattr(agent, "begin_episode") else NoEpisodeHook()
 
 
+class DrawsBefore(NamedTuple):
+    """The order of SARSA and its kin: the next action is drawn, then learned with, then done."""
+
+    nothing: int = 0
+
+    def learn_and_act(
+        self,
+        loop: "TrainingLoop",
+        progress: float,
+        observation: Observation,
+        action: int,
+        reward: float,
+        next_observation: Observation,
+        terminated: bool,
+        over: bool,
+    ) -> int:
+        """Let the agent learn from a step; return its next action, drawn at the end of an episode, too."""
+        next_action = checked(loop.agent.act(next_observation, progress, loop.action_rng), loop.n_actions)
+        loop.agent.learn(observation, action, reward, next_observation, next_action, terminated)
+        return next_action
+
+
+class DrawsAfter(NamedTuple):
+    """The order of Q-learning and its kin: an action is drawn from what was just learned."""
+
+    nothing: int = 0
+
+    def learn_and_act(
+        self,
+        loop: "TrainingLoop",
+        progress: float,
+        observation: Observation,
+        action: int,
+        reward: float,
+        next_observation: Observation,
+        terminated: bool,
+        over: bool,
+    ) -> int:
+        """Let the agent learn from a step; return its next action, this one again where none follows."""
+        loop.agent.learn(observation, action, reward, next_observation, terminated)
+        if over:
+            return action
+        return checked(loop.agent.act(next_observation, progress, loop.action_rng), loop.n_actions)
+
+
+def learner_and_actor(agent: Any, act: Callable[[Any], int]) -> LearnAndAct:
+    """``learn_and_act`` of the agent's order, in plain Python.
+
+    Args:
+        agent: what learns.
+        act: asks it for an action, given an observation.
+    """
+
+    def act_and_learn(transition: Transition, terminated: bool, over: bool) -> int:
+        next_action = act(transition[-1])
+        agent.learn(*transition, next_action, terminated)
+        return next_action
+
+    def learn_and_act(transition: Transition, terminated: bool, over: bool) -> int:
+        agent.learn(*transition, terminated)
+        return transition[1] if over else act(transition[-1])
+
+    return act_and_learn if learns_with_next_action(agent) else learn_and_act
+
+
+def learning_order(agent: Any) -> DrawsBefore | DrawsAfter:
+    """When the agent is asked for its next action: see ``agents.contract.Agent.learn``."""
+    return DrawsBefore() if learns_with_next_action(agent) else DrawsAfter()
+
+
 class TrainingLoop(NamedTuple):
     """What ``train`` needs and changes.
 
@@ -35,6 +109,7 @@ class TrainingLoop(NamedTuple):
         hill: the model of the car.
         agent: what drives and learns; changed in place.
         hook: whose ``begin_episode`` is called, see ``episode_hook``.
+        order: whose ``learn_and_act`` is called, see ``learning_order``.
         n_actions: the actions are 0, 1, ..., n_actions - 1.
         episodes: number N_E of all episodes.
         max_steps: limit N_LE of an episode.
@@ -46,6 +121,7 @@ class TrainingLoop(NamedTuple):
     hill: Any
     agent: Any
     hook: Any
+    order: Any
     n_actions: int
     episodes: int
     max_steps: int
@@ -83,6 +159,7 @@ def training_loop(conditions: Conditions, run: Run, agent: Any) -> TrainingLoop:
         hill,
         agent,
         episode_hook(agent),
+        learning_order(agent),
         hill.n_actions,
         training.episodes,
         training.max_steps,
@@ -130,11 +207,12 @@ def train(loop: TrainingLoop, first: int, last: int) -> None:
         while steps < max_steps and not terminated:
             state, reward, terminated = hill.step(state, action)
             next_observation = hill.observe(state)
-            next_action = checked(agent.act(next_observation, progress, rng), n_actions)
-            agent.learn(observation, action, reward, next_observation, next_action, terminated)
-            observation = next_observation
-            action = next_action
             steps += 1
+            over = terminated or steps == max_steps
+            action = loop.order.learn_and_act(
+                loop, progress, observation, action, reward, next_observation, terminated, over
+            )
+            observation = next_observation
         loop.lengths[episode] = steps
 
 

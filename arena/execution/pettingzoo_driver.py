@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from arena.execution.checkpoint import checkpoint_of
-from arena.execution.loops import episode_hook
+from arena.execution.loops import episode_hook, learner_and_actor
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome
 from envs.foundation.checks import integer
@@ -57,6 +57,7 @@ class _Car:
     def equip(self, conditions: Conditions) -> None:
         self.agent = self.run.entrant.create(conditions.hill, self.run.stream(conditions.seed, "create"))
         self.hook = episode_hook(self.agent)
+        self.learn_and_act = learner_and_actor(self.agent, self._act)
         self.start_rng = self.run.stream(conditions.seed, "start")
         self.checkpoint = checkpoint_of(
             conditions, self.run, self.agent, self.start_rng, self.rng, self.lengths
@@ -81,12 +82,12 @@ class _Car:
         self.hook.begin_episode()
         self.observation = observation
         self.progress = progress
-        self.action = self._checked(self.agent.act(observation, progress, self.rng))
+        self.action = self._act(observation)
 
-    def learn(self, episode: int, reward: float, observation: Any, terminated: bool) -> None:
-        action = self._checked(self.agent.act(observation, self.progress, self.rng))
-        self.agent.learn(self.observation, self.action, reward, observation, action, terminated)
-        self.observation, self.action = observation, action
+    def learn(self, episode: int, reward: float, observation: Any, terminated: bool, over: bool) -> None:
+        transition = self.observation, self.action, reward, observation
+        self.action = self.learn_and_act(transition, terminated, over)
+        self.observation = observation
         self.lengths[episode] += 1
 
     def choose(self, observation: Any) -> None:
@@ -99,6 +100,9 @@ class _Car:
     def finish(self, seconds: float) -> None:
         lengths = (self.lengths, self.test_lengths, self.test_reached)
         self.finished = Outcome.finished(self.run, NAME, self.agent, *lengths, seconds)
+
+    def _act(self, observation: Any) -> int:
+        return self._checked(self.agent.act(observation, self.progress, self.rng))
 
     def _checked(self, action: Any) -> int:
         number = integer("action", action, 0)
@@ -124,10 +128,10 @@ def _train(conditions: Conditions, cars: Mapping[str, _Car]) -> None:
             car.attempt(car.begin_episode, observations[name], episode / training.episodes)
         while _driving(env.agents, cars):
             live = env.agents
-            observations, rewards, terminated, _, _ = env.step({name: cars[name].action for name in live})
+            observations, rewards, terminated, truncated, _ = env.step({n: cars[n].action for n in live})
             for name in live:
-                car = cars[name]
-                car.attempt(car.learn, episode, rewards[name], observations[name], terminated[name])
+                car, over = cars[name], terminated[name] or truncated[name]
+                car.attempt(car.learn, episode, rewards[name], observations[name], terminated[name], over)
 
 
 def _evaluate(conditions: Conditions, cars: Mapping[str, _Car]) -> None:

@@ -45,9 +45,10 @@ class {class_name}(NamedTuple):
             return int(rng.random() * self.values.shape[1])
         return self.greedy(observation)
 
-    # One transition. ``next_action`` is what ``act`` has chosen next (SARSA needs it); ``terminated``
-    # says that the goal was reached. A time limit does not terminate.
-    def learn(self, observation, action, reward, next_observation, next_action, terminated):
+    # One transition; ``terminated`` says that the goal was reached. A time limit does not terminate. The
+    # next action is chosen after this; an argument ``next_action`` before ``terminated`` would be told it
+    # before this, as SARSA wants it.
+    def learn(self, observation, action, reward, next_observation, terminated):
         cell = self.grid.encode(observation)
         target = reward
         if not terminated:

@@ -10,7 +10,7 @@ import numpy as np
 
 from arena.execution import compiled_driver, pettingzoo_driver
 from arena.execution.checkpoint import checkpoint_of, savable
-from arena.execution.loops import episode_hook
+from arena.execution.loops import episode_hook, learner_and_actor
 from arena.tournament.conditions import Conditions, Evaluation, Run, Training
 from arena.tournament.entrant import Entrant
 from arena.tournament.outcome import Outcome, agent_arrays
@@ -117,12 +117,16 @@ def check_survives_hostile_transitions(entrant: Entrant) -> None:
     places = list(_observations())
     hook = episode_hook(agent)
     hook.begin_episode()
-    for step in range(_HOSTILE):
+
+    def act(observation: Any) -> int:
+        return _valid(agent.act(observation, rng.random(), rng), f"act({observation})")
+
+    learn_and_act = learner_and_actor(agent, act)
+    for _ in range(_HOSTILE):
         here, there = (places[rng.integers(len(places))] for _ in range(2))
-        action = _valid(agent.act(here, step / _HOSTILE, rng), f"act({here})")
-        next_action = _valid(agent.act(there, step / _HOSTILE, rng), f"act({there})")
+        action = act(here)
         ended = bool(rng.random() < 0.05)
-        agent.learn(here, action, -1.0, there, next_action, ended)
+        learn_and_act((here, action, -1.0, there), ended, ended)
         if ended or rng.random() < 0.02:
             hook.begin_episode()
     for name, array in agent_arrays(agent).items():
@@ -178,18 +182,21 @@ def _actions(entrant: Entrant) -> list[int]:
 def _drive(entrant: Entrant) -> tuple[Any, list[tuple[Any, int]]]:
     """An agent after a few hundred steps, with what it saw and did."""
     agent, rng, steps = _create(entrant), np.random.default_rng(5), []
+
+    def act(observation: Any) -> int:
+        return int(agent.act(observation, 0.5, rng))
+
+    learn_and_act = learner_and_actor(agent, act)
     for _ in range(3):
         state = _HILL.reset(rng)
         episode_hook(agent).begin_episode()
-        action = agent.act(np.array(_HILL.observe(state)), 0.5, rng)
+        action = act(np.array(_HILL.observe(state)))
         for _ in range(150):
             before = np.array(_HILL.observe(state))
             state, reward, terminated = _HILL.step(state, action)
             after = np.array(_HILL.observe(state))
-            next_action = agent.act(after, 0.5, rng)
-            agent.learn(before, action, reward, after, next_action, terminated)
             steps.append((before, action))
-            action = next_action
+            action = learn_and_act((before, action, reward, after), terminated, terminated)
             if terminated:
                 break
     return agent, steps

@@ -38,16 +38,16 @@ def test_dyna_q_without_planning_is_q_learning(rule: dict[str, Any]) -> None:
 
 def test_dyna_q_repeats_what_it_saw_last() -> None:
     agent = with_draws(make(DynaQ, planning=2), 0.0, 0.99, 0.6, 0.4, 0.0, 0.0)
-    agent.learn(A, 0, -1.0, B, 0, False)  # pair (A, 0) is all that was seen: it is learned three times
+    agent.learn(A, 0, -1.0, B, False)  # pair (A, 0) is all that was seen: it is learned three times
     value = 0.0
     for _ in range(3):
         value += 0.25 * (-1.0 + 0.5 * 5.0 - value)
     assert agent.values.tolist() == table(value, 0.0, 0.0)
-    agent.learn(A, 2, 8.0, B, 0, True)  # then (A, 2), which nothing follows, and (A, 0) once more
+    agent.learn(A, 2, 8.0, B, True)  # then (A, 2), which nothing follows, and (A, 0) once more
     after = 2.0 + 0.25 * (8.0 - 2.0)
     value += 0.25 * (1.5 - value)
     assert agent.values.tolist() == table(value, 0.0, after)
-    agent.learn(A, 0, 3.0, A, 0, False)  # from now on (A, 0) leads to A with reward 3
+    agent.learn(A, 0, 3.0, A, False)  # from now on (A, 0) leads to A with reward 3
     for _ in range(3):
         value += 0.25 * (3.0 + 0.5 * max(value, after) - value)
     assert agent.values.tolist() == table(value, 0.0, after)
@@ -56,15 +56,15 @@ def test_dyna_q_repeats_what_it_saw_last() -> None:
 
 def test_step_size_of_what_is_repeated_follows_the_visits() -> None:
     agent = make(DynaQ, planning=1, step_size=HarmonicRate(1.0, 2.0, 2.0))
-    agent.learn(A, 0, 8.0, B, 0, True)
+    agent.learn(A, 0, 8.0, B, True)
     assert agent.values[0, 0] == 4.0 + 0.25 * (8.0 - 4.0)  # the visit, then one after it
 
 
 def test_curiosity_raises_rewards_of_what_was_not_tried_for_long() -> None:
     agent = with_draws(make(DynaQ, planning=1, curiosity=3.0), 0.0, 0.9, 0.9, 0.9, 0.0)
-    agent.learn(A, 0, 0.0, B, 0, True)
+    agent.learn(A, 0, 0.0, B, True)
     for _ in range(3):
-        agent.learn(A, 1, 0.0, B, 0, True)
+        agent.learn(A, 1, 0.0, B, True)
     assert agent.values.tolist() == table(0.0, 0.0, 0.0)  # what is repeated at once has no bonus
-    agent.learn(A, 1, 0.0, B, 0, True)  # repeats (A, 0), which was tried four steps ago
+    agent.learn(A, 1, 0.0, B, True)  # repeats (A, 0), which was tried four steps ago
     assert agent.values.tolist() == table(0.25 * 3.0 * math.sqrt(4), 0.0, 0.0)

@@ -99,7 +99,7 @@ def test_fine_grid_has_the_predictions_at_its_centres() -> None:
     agent, hill = quick(), Hill()
     for row in np.random.default_rng(1).uniform(hill.low, hill.high, (150, 2)):
         for action in range(3):
-            agent.learn(tuple(row), action, row[0] * action, tuple(row + 0.01 * action), 0, False)
+            agent.learn(tuple(row), action, row[0] * action, tuple(row + 0.01 * action), False)
     rng = np.random.default_rng()
     rng.bit_generator.state = agent.rng.bit_generator.state
     agent.begin_episode()
@@ -121,19 +121,19 @@ def test_batch_is_fitted_every_few_episodes_once_each_action_was_taken() -> None
         agent.values[:] = 0.0
         actions = (0, 1, 0) if episode < 1 else (0, 1, 2)
         for action in actions:
-            agent.learn((-0.5 + 0.1 * action, 0.0), action, -1.0, (-0.4, 0.01), 0, False)
+            agent.learn((-0.5 + 0.1 * action, 0.0), action, -1.0, (-0.4, 0.01), False)
     assert learned == [False, False, True, False, True, False]
     without = quick(every=1)
     for _ in range(3):
         without.begin_episode()
-        without.learn((0.0, 0.0), 1, -1.0, (0.0, 0.0), 0, False)
+        without.learn((0.0, 0.0), 1, -1.0, (0.0, 0.0), False)
     assert not without.values.any()
 
 
 def test_latest_steps_are_remembered() -> None:
     agent = quick(memory=3)
     for number in range(5):
-        agent.learn((0.1 * number, 0.0), number % 3, -float(number), (0.2, 0.03), 0, number == 4)
+        agent.learn((0.1 * number, 0.0), number % 3, -float(number), (0.2, 0.03), number == 4)
     assert sorted(zip(agent.batch.rewards, agent.batch.actions, agent.batch.goes_on)) == [
         (-4.0, 1, False),
         (-3.0, 0, True),

@@ -1,8 +1,9 @@
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
+from walks import A, B, Line, make, table, teach
 
 from agents import Grid, HarmonicRate, LinearDecay, MomentumAgent, QLearning, RandomAgent, Sarsa
 from agents.learning.action_values import best_action, epsilon_greedy
@@ -10,43 +11,20 @@ from agents.learning.exploration import EpsilonGreedy
 from envs import Hill
 
 CLASSES = [QLearning, Sarsa]
-A, B = (0.5,), (1.5,)  # observations in cells 0 and 1
-
-
-class Line(NamedTuple):
-    """A task with one dimension and two cells."""
-
-    low: tuple[float, ...] = (0.0,)
-    high: tuple[float, ...] = (2.0,)
-    n_actions: int = 3
-
-
-def make(cls: type[Any], **parameters: Any) -> Any:
-    """An agent that values the actions 1, 5, 3 in B; with step size 1/4 and discount 1/2 unless told."""
-    agent = cls.create(
-        Line(), **{"bins": 2, "discount": 0.5, "step_size": HarmonicRate(1, 4, 0), **parameters}
-    )
-    agent.values[1] = [1.0, 5.0, 3.0]
-    return agent
-
-
-def table(*changed: float) -> list[list[float]]:
-    return [list(changed), [1.0, 5.0, 3.0]]
-
 
 # Updates computed by hand: q + rate * (reward + discount * next value - q)
 
 
 def test_q_learning_learns_from_the_best_next_action() -> None:
     agent = make(QLearning)
-    agent.learn(A, 2, -1.0, B, 0, False)
+    teach(agent, A, 2, -1.0, B, 0, False)
     assert agent.values.tolist() == table(0.0, 0.0, 0.25 * (-1.0 + 0.5 * 5.0))
     assert agent.visits.tolist() == [[0, 0, 1], [0, 0, 0]]
 
 
 def test_sarsa_learns_from_the_next_action_taken() -> None:
     agent = make(Sarsa)
-    agent.learn(A, 2, -1.0, B, 2, False)
+    teach(agent, A, 2, -1.0, B, 2, False)
     assert agent.values.tolist() == table(0.0, 0.0, 0.25 * (-1.0 + 0.5 * 3.0))
     assert agent.visits.tolist() == [[0, 0, 1], [0, 0, 0]]
 
@@ -55,7 +33,7 @@ def test_sarsa_learns_from_the_next_action_taken() -> None:
 def test_next_value_in_the_same_cell_is_the_one_before_the_update(cls: type[Any], next_value: float) -> None:
     agent = make(cls)
     agent.values[0] = [4.0, 0.0, 8.0]
-    agent.learn(A, 0, -1.0, A, 0, False)
+    teach(agent, A, 0, -1.0, A, 0, False)
     assert agent.values.tolist() == table(4.0 + 0.25 * (-1.0 + 0.5 * next_value - 4.0), 0.0, 8.0)
 
 
@@ -65,10 +43,10 @@ def test_next_value_in_the_same_cell_is_the_one_before_the_update(cls: type[Any]
 )
 def test_goal_rule(cls: type[Any], goal: str, learned: float) -> None:
     agent = make(cls, goal=goal, initial_values=2.0)
-    agent.learn(A, 0, 1.0, B, 1, True)
+    teach(agent, A, 0, 1.0, B, 1, True)
     assert agent.values.tolist() == table(learned, 2.0, 2.0)
     assert agent.visits[0, 0] == 1
-    agent.learn(A, 1, 1.0, B, 1, False)  # a time limit is no goal: here all rules are the same
+    teach(agent, A, 1, 1.0, B, 1, False)  # a time limit is no goal: here all rules are the same
     assert agent.values[0, 1] == 2.0 + 0.25 * (1.0 + 0.5 * 5.0 - 2.0)
 
 
@@ -80,7 +58,7 @@ def steps_taken(agent: Any, visited: str) -> list[float]:
             agent.begin_episode()
         else:
             agent.values[0] = 0.0
-            agent.learn(A, int(visit), 1.0, A, 0, True)
+            teach(agent, A, int(visit), 1.0, A, 0, True)
             taken.append(float(agent.values[0, int(visit)]))
     return taken
 
@@ -103,7 +81,7 @@ def test_counts_belong_to_their_cell(count_visits: str, again: int) -> None:
     taken = []
     for observation in (A, A, B, B):
         agent.values[:] = 0.0
-        agent.learn(observation, 0, 1.0, A, 0, True)
+        teach(agent, observation, 0, 1.0, A, 0, True)
         taken.append(agent.values.max())
     assert taken == [0.5, 1.0 / (2.0 + 2.0 * again)] * 2
 

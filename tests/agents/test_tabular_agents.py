@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from compiled_agents import KINDS, assert_allocates_nothing, assert_same_bits_from_both_drivers
-from walks import A, B, Line, Square, episodes, learn_all, make, table
+from walks import A, B, Line, Square, episodes, learn_all, make, table, teach
 
 from agents import HarmonicRate, LinearDecay, QLearning, Sarsa, Softmax, UpperConfidence
 from agents.algorithms.double_q_learning import DoubleQLearning
@@ -53,7 +53,7 @@ def test_expected_sarsa_learns_from_the_mean_over_what_it_explores(
 ) -> None:
     agent = make(ExpectedSarsa, **parameters)
     agent.act(B, 0.25, np.random.default_rng(1))
-    agent.learn(A, 2, -1.0, B, 0, False)
+    teach(agent, A, 2, -1.0, B, 0, False)
     assert agent.values[0].tolist() == [0.0, 0.0, pytest.approx(0.25 * (-1.0 + 0.5 * mean), rel=1e-14)]
     assert agent.values[1].tolist() == [1.0, 5.0, 3.0]
 
@@ -88,11 +88,11 @@ def test_double_q_learning_by_hand() -> None:
     agent = with_coin(make(DoubleQLearning), 0.49, 0.5)
     first, second = agent.memory.first, agent.memory.second
     first.values[1], second.values[1] = [1.0, 5.0, 3.0], [7.0, 4.0, 9.0]
-    agent.learn(A, 2, -1.0, B, 0, False)  # the first deems 1 best, which the second values with 4
+    teach(agent, A, 2, -1.0, B, 0, False)  # the first deems 1 best, which the second values with 4
     assert first.values[0].tolist() == [0.0, 0.0, 0.25 * (-1.0 + 0.5 * 4.0)]
     assert second.values[0].tolist() == [0.0, 0.0, 0.0]
     assert agent.values[0].tolist() == [0.0, 0.0, 0.125]
-    agent.learn(A, 2, -1.0, B, 0, False)  # the second deems 2 best, which the first values with 3
+    teach(agent, A, 2, -1.0, B, 0, False)  # the second deems 2 best, which the first values with 3
     assert first.values[0, 2] == 0.25
     assert second.values[0, 2] == 0.25 * (-1.0 + 0.5 * 3.0)
     assert agent.values[0, 2] == (0.25 + 0.125) / 2
@@ -106,13 +106,13 @@ def test_step_sizes_of_double_q_learning_follow_the_visits_of_the_table(
     rate = HarmonicRate(1.0, 2.0, 2.0)
     agent = with_coin(make(DoubleQLearning, step_size=rate, count_visits=count_visits), 0.0, 0.9, 0.0, 0.9)
     agent.begin_episode()
-    agent.learn(A, 0, 1.0, B, 0, True)
-    agent.learn(A, 0, 1.0, B, 0, True)
-    agent.learn(A, 1, 1.0, B, 0, True)
+    teach(agent, A, 0, 1.0, B, 0, True)
+    teach(agent, A, 0, 1.0, B, 0, True)
+    teach(agent, A, 1, 1.0, B, 0, True)
     assert agent.memory.first.values[0].tolist() == [0.5, again, 0.0]
     assert agent.memory.second.values[0].tolist() == [0.5, 0.0, 0.0]
     agent.begin_episode()
-    agent.learn(A, 1, 1.0, B, 0, True)
+    teach(agent, A, 1, 1.0, B, 0, True)
     assert agent.memory.second.values[0].tolist() == [0.5, again, 0.0]
 
 
@@ -135,8 +135,8 @@ def test_double_q_learning_does_not_take_luck_for_value() -> None:
             agent = cls.create(Line(), bins=2, discount=1.0, step_size=0.1, rng=np.random.default_rng(seed))
             noise = np.random.default_rng(100 + seed)
             for _ in range(60):
-                agent.learn(B, int(noise.integers(3)), noise.normal(-0.1), A, 0, True)
-                agent.learn(A, 0, 0.0, B, 0, False)
+                teach(agent, B, int(noise.integers(3)), noise.normal(-0.1), A, 0, True)
+                teach(agent, A, 0, 0.0, B, 0, False)
             worth[cls].append(agent.values[0, 0])
     assert np.mean(worth[QLearning]) > 0.1
     assert np.mean(worth[DoubleQLearning]) < 0.0
@@ -160,9 +160,9 @@ def test_n_step_sarsa_is_the_linear_agents_with_cells_for_features(n: int) -> No
 
 def test_two_step_sarsa_learns_from_two_rewards_and_the_value_after_them() -> None:
     agent = make(NStepSarsa, n=2)
-    agent.learn(A, 0, 4.0, A, 1, False)
+    teach(agent, A, 0, 4.0, A, 1, False)
     assert agent.values.tolist() == table(0.0, 0.0, 0.0)
-    agent.learn(A, 1, 8.0, B, 2, False)
+    teach(agent, A, 1, 8.0, B, 2, False)
     assert agent.values.tolist() == table(0.25 * (4.0 + 0.5 * 8.0 + 0.25 * 3.0), 0.0, 0.0)
     assert agent.visits.tolist() == [[1, 0, 0], [0, 0, 0]]
     agent.begin_episode()  # the time was up: the step that waits has one reward and the value after it
@@ -177,7 +177,7 @@ def test_steps_that_wait_count_for_the_episode_they_were_made_in() -> None:
     agent = make(NStepSarsa, n=3, step_size=rate, count_visits="episode", discount=0.0)
     for _ in range(2):
         agent.begin_episode()
-        agent.learn(A, 0, 8.0, B, 0, False)
+        teach(agent, A, 0, 8.0, B, 0, False)
     agent.begin_episode()
     assert agent.values[0, 0] == 4.0 + 0.25 * (8.0 - 4.0)  # 1/2, then 1/4 in the second episode
 
@@ -191,10 +191,10 @@ def test_whole_episode_returns_its_rewards_and_what_the_goal_rule_says(
     cls: type[Any], goal: str, last: float
 ) -> None:
     agent = make(cls, goal=goal, initial_values=8.0, **({"n": 9} if cls is NStepSarsa else {}))
-    agent.learn(A, 0, 1.0, A, 1, False)
-    agent.learn(A, 1, 2.0, A, 2, False)
+    teach(agent, A, 0, 1.0, A, 1, False)
+    teach(agent, A, 1, 2.0, A, 2, False)
     assert agent.values.tolist() == table(8.0, 8.0, 8.0)
-    agent.learn(A, 2, 4.0, B, 2, True)
+    teach(agent, A, 2, 4.0, B, 2, True)
     second = 2.0 + 0.5 * last
     first = 1.0 + 0.5 * second
     moved = [8.0 + 0.25 * (target - 8.0) for target in (first, second, last)]
@@ -231,8 +231,8 @@ def test_as_many_steps_as_an_episode_has_are_monte_carlo() -> None:
 
 def test_time_limit_leaves_monte_carlo_with_the_value_of_the_last_cell_and_action() -> None:
     agent = make(MonteCarlo)
-    agent.learn(A, 0, 1.0, A, 1, False)
-    agent.learn(A, 1, 2.0, B, 2, False)
+    teach(agent, A, 0, 1.0, A, 1, False)
+    teach(agent, A, 1, 2.0, B, 2, False)
     agent.begin_episode()
     second = 2.0 + 0.5 * 3.0
     assert agent.values.tolist() == table(0.25 * (1.0 + 0.5 * second), 0.25 * second, 0.0)
@@ -243,8 +243,8 @@ def test_time_limit_leaves_monte_carlo_with_the_value_of_the_last_cell_and_actio
 def test_monte_carlo_forgets_what_is_beyond_its_memory() -> None:
     agent = make(MonteCarlo, memory=2)
     for action in (0, 1, 2, 1):
-        agent.learn(A, action, 1.0, A, 0, False)
-    agent.learn(A, 2, 4.0, B, 0, True)
+        teach(agent, A, action, 1.0, A, 0, False)
+    teach(agent, A, 2, 4.0, B, 0, True)
     assert agent.values.tolist() == table(0.0, 0.25 * (1.0 + 0.5 * 4.0), 0.25 * 4.0)
 
 

@@ -5,6 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from arena.execution.loops import learner_and_actor
+
 
 class Chain(NamedTuple):
     """Cells 0 to 4 in a row; action 1 goes right, 0 left; the goal is right of the last."""
@@ -24,15 +26,15 @@ def chain_values(discount: float) -> NDArray[np.float64]:
 
 def drive_chain(agent: Any, drives: int) -> None:
     rng = np.random.default_rng(1)
+    learn_and_act = learner_and_actor(agent, lambda observation: agent.act(observation, 0.0, rng))
     for _ in range(drives):
-        cell, action, end = 0, agent.act((0.5,), 0.0, rng), False
         agent.begin_episode()
+        cell, action, end = 0, agent.act((0.5,), 0.0, rng), False
         while not end:
             following = cell + 1 if action == 1 else max(cell - 1, 0)
             end = following == 5
-            next_action = agent.act((following + 0.5,), 0.0, rng)
-            agent.learn((cell + 0.5,), action, -1.0, (following + 0.5,), next_action, end)
-            cell, action = following, next_action
+            action = learn_and_act(((cell + 0.5,), action, -1.0, (following + 0.5,)), end, end)
+            cell = following
 
 
 class Cells4(NamedTuple):

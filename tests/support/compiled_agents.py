@@ -7,7 +7,7 @@ from bits import bits_of
 
 from agents import Softmax, UpperConfidence
 from arena import Entrant, Evaluation, Tournament, Training, run
-from arena.execution.loops import TrainingLoop, episode_hook, train
+from arena.execution.loops import TrainingLoop, episode_hook, learning_order, train
 from envs import Hill
 from envs.compilation import kernel_info
 
@@ -40,5 +40,6 @@ def assert_allocates_nothing(cls: type[Any], parameters: dict[str, Any]) -> None
     """The kernel of training is the one without reference counts."""
     agent = Entrant("it", cls, **parameters).create(NEAR, np.random.default_rng(0))
     streams = np.random.default_rng(1), np.random.default_rng(2)
-    loop = TrainingLoop(NEAR, agent, episode_hook(agent), 3, 2, 50, *streams, np.zeros(2, np.int64))
+    parts = NEAR, agent, episode_hook(agent), learning_order(agent)
+    loop = TrainingLoop(*parts, 3, 2, 50, *streams, np.zeros(2, np.int64))
     assert not kernel_info(train, loop, 0, 2).counts_references

@@ -5,9 +5,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from agents import HarmonicRate
+from agents.contract import learns_with_next_action
 
 A, B = (0.5,), (1.5,)  # observations in cells 0 and 1
-Step = tuple[Any, int, float, Any, int, bool]  # the arguments of ``learn``
+Step = tuple[Any, int, float, Any, int, bool]  # what ``teach`` takes
 
 
 class Line(NamedTuple):
@@ -56,11 +57,17 @@ def episodes(seed: int, count: int = 8, limit: int = 40) -> list[list[Step]]:
     return found
 
 
+def teach(agent: Any, *step: Any) -> None:
+    """Let it learn from a step; an agent that does not ask for the next action is not told it."""
+    *transition, next_action, terminated = step
+    agent.learn(*transition, *([next_action] if learns_with_next_action(agent) else []), terminated)
+
+
 def learn_all(agent: Any, walks: list[list[Step]]) -> Any:
     """The agent after it has learned from these episodes, and has heard the next one begin."""
     for walk in walks:
         agent.begin_episode()
         for step in walk:
-            agent.learn(*step)
+            teach(agent, *step)
     agent.begin_episode()
     return agent

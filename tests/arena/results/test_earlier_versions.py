@@ -11,16 +11,24 @@ from arena.cli import main
 from arena.results import digest
 from arena.results.equivalence import equivalent_code
 from arena.results.provenance import source_digests
+from arena.results.store import ResultsError
 from arena.tournament import Entrant
 
 DATA = Path(__file__).parent / "data"
 # What 0.1.0 printed for the whole tournament, of which the file has the first of two replicates.
-WHOLE = "ecd4ed49848586480ce4d431973ac6107a10a4909ac62103cfcfbd04ab2d93dd"
+WHOLE = "4232e0d6ee335e45c8a4c4277df039f77f148bf694df68ee3adc0092bd08f251"
 
 
 @pytest.fixture
 def file(tmp_path: Path, isolated_registry: None) -> Path:
+    """With all built-in agents."""
     return Path(shutil.copy(DATA / "version-0.1.0.sqlite", tmp_path))
+
+
+@pytest.fixture
+def unchanged(tmp_path: Path, isolated_registry: None) -> Path:
+    """With those that leave the same bits since, a plugin and a policy."""
+    return Path(shutil.copy(DATA / "version-0.1.0-unchanged.sqlite", tmp_path))
 
 
 def push(observation: object) -> int:
@@ -35,7 +43,8 @@ def test_a_file_of_0_1_0_is_read_and_shown(file: Path, capsys: pytest.CaptureFix
     assert "Tournament before: 19 entrants, 2 replicates, seed 3." in capsys.readouterr().out
 
 
-def test_a_file_of_0_1_0_is_continued_to_the_same_bits(file: Path, tmp_path: Path) -> None:
+def before(file: Path, tmp_path: Path) -> Tournament:
+    """The tournament of such a file."""
     seeker = load_plugin(shutil.copy(DATA / "seeker.txt", tmp_path / "seeker.py"))["seeker"]
     others = {"plugin": seeker, "policy": PolicyAgent.of(push)}
     with load(file) as results:
@@ -43,7 +52,7 @@ def test_a_file_of_0_1_0_is_continued_to_the_same_bits(file: Path, tmp_path: Pat
             Entrant(name, BUILT_IN.get(record.agent) or others[name], **record.parameters)
             for name, record in results.entrants.items()
         )
-    tournament = Tournament(
+    return Tournament(
         entrants,
         training=Training(6, 120),
         evaluation=Evaluation(4, 150),
@@ -51,8 +60,19 @@ def test_a_file_of_0_1_0_is_continued_to_the_same_bits(file: Path, tmp_path: Pat
         seed=3,
         name="before",
     )
-    with run(tournament, file, n_jobs=1, driver="pettingzoo") as results:  # nothing has to be compiled
+
+
+def test_a_file_of_0_1_0_is_continued_to_the_same_bits(unchanged: Path, tmp_path: Path) -> None:
+    # On this driver nothing has to be compiled.
+    with run(before(unchanged, tmp_path), unchanged, n_jobs=1, driver="pettingzoo") as results:
         assert digest(results) == WHOLE
+
+
+def test_runs_of_0_1_0_of_an_agent_that_draws_otherwise_now_are_not_mixed_with_others(
+    file: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(ResultsError, match=r"holds runs of other code of '[\w-]+'; name another file"):
+        run(before(file, tmp_path), file, n_jobs=1)
 
 
 def test_code_of_built_in_agents_is_known_to_leave_the_bits_of_before() -> None:

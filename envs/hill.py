@@ -61,6 +61,7 @@ class _Constants(NamedTuple):
     inelastic_wall: bool
     integrator: Integrator
     dynamics: Dynamics
+    goal_reward: float
 
 
 class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
@@ -85,6 +86,7 @@ class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
         inelastic_wall: whether the car loses its velocity at ``min_position``.
         integrator: ``"semi-implicit"`` or ``"explicit"``.
         dynamics: ``"simplified"``, Eq. (5), or ``"constrained"``, the full equation of motion.
+        goal_reward: reward of the step that reaches the goal; that of any other is -1.
 
     Raises:
         TypeError: when a constant is no number.
@@ -113,6 +115,7 @@ class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
         inelastic_wall: bool = True,
         integrator: Integrator | str = Integrator.SEMI_IMPLICIT,
         dynamics: Dynamics | str = Dynamics.SIMPLIFIED,
+        goal_reward: float = -1.0,
     ) -> Self:
         if not isinstance(inelastic_wall, (bool, np.bool_)):
             raise InvalidTypeError(f"inelastic_wall must be true or false, got {inelastic_wall!r}")
@@ -138,6 +141,7 @@ class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
             bool(inelastic_wall),
             Integrator(integrator),  # type: ignore[arg-type]  # its _missing_ takes names
             Dynamics(dynamics),  # type: ignore[arg-type]  # likewise
+            number("goal_reward", goal_reward),
         )
 
     @property
@@ -155,7 +159,7 @@ class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
         return (self.min_start + (self.max_start - self.min_start) * rng.random(), 0.0)
 
     def step(self, state: State, action: int) -> tuple[State, float, bool]:
-        """One time step, Eq. (6): the next state, the reward (-1 always) and whether it is the goal."""
+        """One time step, Eq. (6): the next state, the reward and whether it is the goal."""
         position, velocity = state
         # The order of these operations is Gymnasium's, to the bit.
         acceleration = (action - 1) * (self.thrust / self.mass) + math.cos(self.omega * position) * (
@@ -181,7 +185,8 @@ class Hill(Validated, _Constants):  # type: ignore[misc]  # both have _make
             position = self.max_position
         if self.inelastic_wall and position == self.min_position and velocity < 0.0:
             velocity = 0.0
-        return (position, velocity), -1.0, position >= self.goal_position
+        reached = position >= self.goal_position
+        return (position, velocity), self.goal_reward if reached else -1.0, reached
 
     def observe(self, state: State) -> State:
         """What the driver sees of the state: all of it, exactly."""

@@ -18,7 +18,7 @@ from agents.parameters.declared import Count
 from envs.foundation.errors import InvalidValueError
 
 Bins = Count | Sequence[Count] | Sequence[Sequence[float]]
-Binning = Literal["uniform", "quantile", "kmeans"]
+Binning = Literal["uniform", "digitize", "quantile", "kmeans"]
 
 _SAMPLES = 20_000  # observations from which cells are learned
 _EPISODE = 500  # of them in a row
@@ -34,8 +34,10 @@ def make_cells(task: Any, bins: Bins, binning: Binning, rng: np.random.Generator
     Args:
         task: the hill; for cells that are learned it must have ``reset`` and ``step``.
         bins: number of cells along each dimension; or, as ``numpy.histogramdd`` has it, the edges.
-        binning: ``"uniform"``; ``"quantile"``: equally many of the visited observations in the bins of
-            each dimension; ``"kmeans"``: as many cells in all, around the centres of clusters.
+        binning: ``"uniform"``; ``"digitize"``: as many *edges* along each dimension, from the least to the
+            greatest value, so that the last cell has nothing but the greatest; ``"quantile"``: equally many
+            of the visited observations in the bins of each dimension; ``"kmeans"``: as many cells in all,
+            around the centres of clusters.
         rng: draws the drives whose observations cells are learned from.
 
     Raises:
@@ -52,6 +54,8 @@ def make_cells(task: Any, bins: Bins, binning: Binning, rng: np.random.Generator
     grid = Grid.over(task, cast("int | Sequence[int]", bins))
     if binning == "uniform":
         return grid
+    if binning == "digitize":
+        return EdgeGrid.digitizing(task.low, task.high, grid.bins)
     visited = _visited(task, rng or np.random.default_rng())
     if binning == "kmeans":
         return _clusters(visited, grid.size)

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from agents.contract import Floats, Integers, Observation
 from envs.foundation.checks import number
@@ -40,11 +41,31 @@ class EdgeGrid(NamedTuple):
                     f"bins must be 2 or more ascending edges a dimension, got {tuple(given)!r}"
                 )
             rows.append(row[1:-1])
-        inner = np.full((len(rows), max(1, *map(len, rows))), np.inf)
-        for row, target in zip(rows, inner, strict=True):
+        return cls._between(rows)
+
+    @classmethod
+    def digitizing(cls, low: Sequence[float], high: Sequence[float], bins: Sequence[int]) -> Self:
+        """The grid of the video tutorials: ``numpy.digitize(value, numpy.linspace(low, high, n)) - 1``.
+
+        So ``n`` numbers of cells, but ``n - 1`` cells of the same size: the last has only ``high``.
+
+        Args:
+            low: least value of each dimension.
+            high: greatest value of each dimension.
+            bins: number of edges along each dimension.
+        """
+        edges = (np.linspace(a, b, n) for a, b, n in zip(low, high, bins, strict=True))
+        return cls._between([row[1:] for row in edges])
+
+    @classmethod
+    def _between(cls, rows: Sequence[ArrayLike]) -> Self:
+        """The grid with these edges between its cells."""
+        edges = [np.asarray(row, float) for row in rows]
+        inner = np.full((len(edges), max(1, *map(len, edges))), np.inf)
+        for row, target in zip(edges, inner, strict=True):
             target[: len(row)] = row
         inner.flags.writeable = False
-        return cls(tuple(len(row) + 1 for row in rows), inner)
+        return cls(tuple(len(row) + 1 for row in edges), inner)
 
     @property
     def size(self) -> int:

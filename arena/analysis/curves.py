@@ -85,7 +85,8 @@ def reward_curves(results: Results, entrant: str, window: int = WINDOW) -> NDArr
     """Moving averages of the accumulated reward of an episode, one row a finished replicate.
 
     Shape (replicates, episodes - window + 1); the first column is the mean of the first ``window`` episodes.
-    The reward of a step is -1, so the accumulated one is minus the steps.
+    The reward of a step is -1, so the accumulated one is minus the steps; an episode that ends before the
+    limit ends at the goal, the last step with the hill's ``goal_reward``.
 
     Raises:
         ValueError: when there is no such entrant, no replicate of it has finished, or there are fewer
@@ -102,4 +103,6 @@ def reward_curves(results: Results, entrant: str, window: int = WINDOW) -> NDArr
     episodes = results.conditions.training.episodes
     if integer("window", window, 1) > episodes:
         raise InvalidValueError(f"window must be at most the {episodes} training episodes, got {window}")
-    return np.array([-moving_average(steps, window) for steps in lengths])
+    conditions = results.conditions
+    at_the_goal, limit = conditions.hill.goal_reward + 1.0, conditions.training.max_steps
+    return np.array([moving_average(at_the_goal * (n < limit) - n, window) for n in lengths])

@@ -24,7 +24,7 @@ def walk(
     hill: Annotated[
         str,
         typer.Option(
-            help="paper, constrained, or a TOML file with a table [hill].", metavar="NAME|FILE.toml"
+            help="paper, as-run, constrained, or a TOML file with a table [hill].", metavar="NAME|FILE.toml"
         ),
     ] = "paper",
     integrator: Annotated[

@@ -1,11 +1,16 @@
 """Hills by name, and from TOML files."""
 
 from arena.tournament.configuration import build, read_toml
+from arena.tournament.readings import READINGS
 from envs import Hill
 from envs.foundation.errors import InvalidValueError, naming
 
-HILLS = {"paper": Hill(), "constrained": Hill(dynamics="constrained")}
-"""The paper's, Eq. (7), and the same with the full equation of motion (docs/physics.md)."""
+HILLS = {
+    "paper": Hill(),
+    "as-run": Hill()._replace(**READINGS["as-run"].hill),
+    "constrained": Hill(dynamics="constrained"),
+}
+"""The paper's, Eq. (7); that of the reading ``as-run``; the full equation of motion (docs/physics.md)."""
 
 
 def find_hill(name: str) -> Hill:

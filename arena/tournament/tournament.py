@@ -10,9 +10,9 @@ from arena.common.plain import plain
 from arena.statistics.sequential import ADAPTIVE, MAX_REPLICATES, looks
 from arena.tournament.conditions import Conditions, Evaluation, Run, Training, _integers
 from arena.tournament.entrant import Entrant
-from arena.tournament.readings import READINGS
+from arena.tournament.readings import find_reading
 from envs import Hill
-from envs.foundation.checks import choice, instance, number
+from envs.foundation.checks import instance, number
 from envs.foundation.errors import InvalidTypeError, InvalidValueError
 
 
@@ -58,7 +58,7 @@ class Tournament:
     leaders: int = 1
 
     def __post_init__(self) -> None:
-        reading = READINGS[choice("reading", self.reading, READINGS)]
+        reading = find_reading(self.reading)
         for attribute, kind in (("hill", Hill), ("training", Training), ("evaluation", Evaluation)):
             instance(attribute, getattr(self, attribute), kind)
         if not isinstance(self.name, str) or not self.name.strip() or not self.name.isprintable():
@@ -117,7 +117,7 @@ class Tournament:
             "reading": self.reading,
             "seed": self.seed,
             "replicates": self.replicates,
-            "hill": plain(self.hill),
+            "hill": _constants(self.hill),
             "training": asdict(self.training),
             "evaluation": asdict(self.evaluation),
             "time_limit": self.time_limit,
@@ -143,3 +143,11 @@ def _entrants(entrants: Iterable[Any]) -> tuple[Entrant, ...]:
         twice = next(name for name in names if names.count(name) > 1)
         raise InvalidValueError(f"entrants must have names that differ, got {twice!r} twice")
     return named
+
+
+def _constants(hill: Hill) -> dict[str, Any]:
+    """All of them; one that version 0.1.0 did not have only where it changes anything: digests stay."""
+    constants: dict[str, Any] = plain(hill)
+    if hill.goal_reward == Hill().goal_reward:
+        del constants["goal_reward"]
+    return constants

@@ -50,6 +50,36 @@ def test_edges_of_a_uniform_grid_make_the_same_cells() -> None:
     assert np.array_equal(all_of(grid, points), all_of(same, points))
 
 
+@given(
+    bins=st.tuples(st.integers(1, 60), st.integers(1, 60)),
+    share=st.tuples(st.floats(0, 1), st.floats(0, 1)),
+    data=st.data(),
+)
+def test_digitize_is_numpy_s_to_the_bit(
+    bins: tuple[int, int], share: tuple[float, float], data: st.DataObject
+) -> None:
+    cells = make_cells(HILL, bins, "digitize", None)
+    assert cells.size == bins[0] * bins[1]
+    numbers, point = [], []
+    for low, high, n, part in zip(HILL.low, HILL.high, bins, share, strict=True):
+        edges = np.linspace(low, high, n)
+        edge = data.draw(st.sampled_from(list(edges)))
+        x = data.draw(st.sampled_from([low + part * (high - low), edge, np.nextafter(edge, -1.0)]))
+        x = min(max(x, low), high)
+        numbers.append(int(np.digitize(x, edges)) - 1)
+        point.append(float(x))
+    assert divmod(cells.encode(point), bins[1]) == tuple(numbers)
+
+
+def test_digitizing_leaves_one_cell_less_with_rest_in_the_middle_of_one() -> None:
+    cells = make_cells(HILL, 20, "digitize", None)
+    at_rest = [cells.encode((-0.5, v)) for v in (-0.0036, 0.0, 0.0036)]
+    assert len(set(at_rest)) == 1
+    assert cells.encode((HILL.max_position, HILL.max_velocity)) == 20 * 20 - 1
+    below = np.nextafter(HILL.high, -1.0).tolist()
+    assert cells.encode(below) == 18 * 20 + 18
+
+
 def test_quantile_bins_hold_about_equally_many() -> None:
     cells, seen = make_cells(HILL, (6, 9), "quantile", random()), visited()
     assert isinstance(cells, EdgeGrid)

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from envs import Dynamics, Hill, Integrator
+from envs import Dynamics, Hill, Integrator, mountain_car_v0, single_car_v0
 from envs.compilation import compile_loop
 
 Floats = NDArray[np.float64]
@@ -198,6 +198,21 @@ def test_random_walks_are_as_long_as_in_the_paper() -> None:
     hill, rng, lengths = Hill(), np.random.default_rng(4), np.zeros(300, np.int64)
     compile_loop(walk_at_random, hill, rng, lengths)(hill, rng, lengths)
     assert lengths.mean() == pytest.approx(42_300, abs=4 * 40_000 / math.sqrt(300))
+
+
+def test_the_step_to_the_goal_has_a_reward_of_its_own() -> None:
+    state = (0.499, 0.05)
+    for hill, reward in ((Hill(), -1.0), (Hill(goal_reward=0.0), 0.0), (Hill(goal_reward=100.0), 100.0)):
+        there, received, reached = hill.step(state, 2)
+        assert (received, reached) == (reward, True)
+        assert hill.step((-0.5, 0.0), 2)[1:] == (-1.0, False)
+        car = single_car_v0.SingleCarEnv(hill)
+        car.reset(options={"start": state})
+        assert car.step(2)[1] == reward
+        cars = mountain_car_v0.parallel_env(["a"], hill)
+        cars.reset(options={"start": {"a": state}})
+        assert cars.step({"a": 2})[1] == {"a": reward}
+        assert there == Hill().step(state, 2)[0]
 
 
 POSITIVE = [(name, bad) for name in ("omega", "mass", "time_step") for bad in (0.0, -1.0)]

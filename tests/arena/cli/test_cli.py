@@ -78,11 +78,11 @@ def test_a_finished_tournament_is_only_printed(race: str, capsys: pytest.Capture
 
 
 def test_options_override_the_file(race: str) -> None:
-    options = ["--replicates", "1", "--seed", "9", "--driver", "pettingzoo", "--reading", "slow-rate"]
+    options = ["--replicates", "1", "--seed", "9", "--driver", "pettingzoo", "--reading", "state-visits"]
     assert main(["run", race, "--jobs", "1", *options]) == 0
     with load("runs/race.sqlite") as results:
         assert results.config["seed"] == 9
-        assert results.config["reading"] == "slow-rate"
+        assert results.config["reading"] == "state-visits"
         assert results.frame().driver.tolist() == ["pettingzoo"] * 2
 
 

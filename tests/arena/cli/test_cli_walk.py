@@ -99,7 +99,7 @@ def test_a_goal_out_of_reach_ends_at_the_limit_and_is_told(capsys: pytest.Captur
         (["--jobs", "0"], "--jobs must not be 0: give a number of workers, or -1 for one a core"),
         (
             ["--hill", "high"],
-            "hill must be one of paper, constrained, or a file that ends in .toml, got 'high'",
+            "hill must be one of paper, as-run, constrained, or a file that ends in .toml, got 'high'",
         ),
         (["--hill", "none.toml"], "there is no file none.toml"),
         (["--hill", "empty.toml"], "empty.toml: hill must be a table, got None"),

@@ -26,7 +26,7 @@ PUBLIC = {
     """,
     "arena.plugins": "PluginError load_plugin",
     "arena.reproduction": """
-        PAPER Claim Comparison WalkStudy compare iterations_spread paper_claims paper_tables
+        PAPER Claim Comparison Fit WalkStudy compare fit iterations_spread paper_claims paper_tables
         published results_claims study
     """,
     "arena.results": "Results ResultsError Trained UnknownPolicyError digest load",

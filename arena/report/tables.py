@@ -14,7 +14,7 @@ from arena.reproduction.published_values import MINIMUM_ACCURACY
 from arena.reproduction.tables import Comparison, compare
 from arena.results.results import Results
 from arena.statistics.sequential import ADAPTIVE
-from arena.tournament.readings import READINGS
+from arena.tournament.readings import READINGS, RETIRED
 
 _HEADERS = {
     "regret": "regret",
@@ -47,7 +47,7 @@ def render(results: Results, by: str | None = None, confidence: float = 0.95) ->
 
 def _heading(results: Results, confidence: float) -> str:
     config = results.config
-    reading = READINGS.get(config["reading"])
+    reading = (READINGS | RETIRED).get(config["reading"])
     replicates = config["replicates"]
     if replicates == ADAPTIVE:
         replicates = f"at most {config['max_replicates']}"
@@ -141,9 +141,15 @@ def _paper(comparison: Comparison) -> RenderableType:
         f"the cells {comparison.mean_accuracy:.2f}% (paper {comparison.paper_mean_accuracy:.2f}%).\n"
         f"Iterations beside the paper's: correlation {comparison.iterations_correlation:.3f} over the "
         f"{cells} cells, mean difference {comparison.iterations_difference:+.1f}%, "
-        f"root mean square {comparison.iterations_error:.1f}%."
+        f"root mean square {comparison.iterations_error:.1f}%{_chance(comparison)}."
     )
     return Group(first, second, Text(summary))
+
+
+def _chance(comparison: Comparison) -> str:
+    """What the root mean square would be by chance, where there are replicates to tell."""
+    chance = comparison.iterations_chance
+    return "" if math.isnan(chance) else f", by chance {chance:.1f}%"
 
 
 def _failures(results: Results) -> Iterator[Text]:

@@ -8,10 +8,10 @@ import numpy as np
 
 from arena.common.npz import Floats
 from arena.common.plain import without_nan
+from arena.reproduction.goodness import fit
 from arena.reproduction.published_values import MINIMUM_ACCURACY, Key, published
-from arena.results.records import RunRecord
 from arena.results.results import Results
-from arena.statistics.intervals import correlation, mean_interval
+from arena.statistics.intervals import mean_interval
 from envs.foundation.errors import InvalidValueError
 
 
@@ -42,6 +42,8 @@ class Comparison:
         iterations_correlation: of our means with the paper's Table 2.
         iterations_difference: mean relative difference of ours from it, in percent.
         iterations_error: root mean square of the relative differences, in percent.
+        iterations_chance: what that would be by chance alone, see ``arena.reproduction.Fit``.
+        iterations_chi_square: of Table 2, over its cells, likewise.
     """
 
     cells: tuple[Cell, ...]
@@ -51,6 +53,8 @@ class Comparison:
     iterations_correlation: float
     iterations_difference: float
     iterations_error: float
+    iterations_chance: float
+    iterations_chi_square: float
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, NaN as None."""
@@ -62,32 +66,21 @@ def compare(results: Results) -> Comparison | None:
     """The comparison, if ``results`` are of the tournament ``paper``; else None."""
     if results.config["name"] != "paper":
         return None
-    keys = _keys(results)
-    runs: dict[Key, list[RunRecord]] = {}
-    for record in results.records:
-        if record.finished and record.entrant in keys:
-            runs.setdefault(keys[record.entrant], []).append(record)
-    cells = tuple(_cell(key, runs.get(key, []), *row) for key, row in published().items())
-    ours = [cell.iterations[0] for cell in cells]
-    theirs = [cell.paper_iterations for cell in cells]
-    ratios = [a / b - 1.0 for a, b in zip(ours, theirs, strict=True) if not math.isnan(a)]
+    tables = _tables(results)
+    rows = zip(published().items(), *(tables[score] for score in PAPER_SCORES), strict=True)
+    cells = tuple(Cell(*key, *map(mean_interval, ours), *theirs) for (key, theirs), *ours in rows)
+    iterations = fit(tables["iterations"], [cell.paper_iterations for cell in cells])
     return Comparison(
         cells,
         sum(cell.accuracy[0] > MINIMUM_ACCURACY for cell in cells),
         mean_interval(cell.accuracy[0] for cell in cells)[0],
         mean_interval(cell.paper_accuracy for cell in cells)[0],
-        correlation(ours, theirs),
-        100.0 * mean_interval(ratios)[0],
-        100.0 * math.sqrt(mean_interval(ratio**2 for ratio in ratios)[0]),
+        iterations.correlation,
+        iterations.difference,
+        iterations.error,
+        iterations.chance,
+        iterations.chi_square,
     )
-
-
-def _cell(key: Key, runs: list[RunRecord], accuracy: float, mean_length: float, iterations: float) -> Cell:
-    def mean(score: str) -> tuple[float, float]:
-        return mean_interval(float(getattr(record, score)) for record in runs)
-
-    ours = (mean("accuracy"), mean("mean_length"), mean("iterations"))
-    return Cell(*key, *ours, accuracy, mean_length, iterations)
 
 
 PAPER_SCORES = ("accuracy", "mean_length", "iterations")
@@ -99,42 +92,28 @@ def paper_tables(results: Results) -> dict[str, Floats]:
     Raises:
         ValueError: when the results are not those of the whole tournament.
     """
-    cells = {key: number for number, key in enumerate(published())}
-    config, keys = results.config, _keys(results)
+    config, tables = results.config, _tables(results)
     count = config["replicates"]
-    runs = {
-        (keys.get(record.entrant), record.replicate): record
-        for record in results.records
-        if record.finished and config["name"] == "paper" and isinstance(count, int)
-    }
-    if not runs or runs.keys() != {(key, number) for key in cells for number in range(count)}:
+    if config["name"] != "paper" or not isinstance(count, int) or np.isnan(tables["iterations"]).any():
         raise InvalidValueError(
             f"results must be those of the tournament paper, all runs finished, got {results!r}"
         )
     if count < 2:
         raise InvalidValueError("results must have 2 replicates or more, got 1")
-    return {
-        score: np.array(
-            [[getattr(runs[key, replicate], score) for replicate in range(count)] for key in cells],
-            dtype=float,
-        )
-        for score in PAPER_SCORES
-    }
+    return tables
+
+
+def _tables(results: Results) -> dict[str, Floats]:
+    """The same with NaN for each run that is not finished."""
+    cells, keys = {key: number for number, key in enumerate(published())}, _keys(results)
+    tables = {score: np.full((len(cells), results.max_replicates), math.nan) for score in PAPER_SCORES}
+    for record in results.records:
+        if record.finished and keys.get(record.entrant) in cells:
+            for score, table in tables.items():
+                table[cells[keys[record.entrant]], record.replicate] = getattr(record, score)
+    return tables
 
 
 def _keys(results: Results) -> dict[str, Key]:
     """By entrant, the cell of the tables that it is."""
     return {e.name: (e.agent, *e.bins) for e in results.entrants.values() if e.bins is not None}
-
-
-def iterations_spread(iterations: Floats) -> Floats:
-    """How far each replicate is from the mean of the others: root mean square over the cells, in percent.
-
-    So far would the paper's Table 2 be from our means if its protocol were ours.
-
-    Args:
-        iterations: shape (cells, replicates).
-    """
-    others = (iterations.sum(axis=1, keepdims=True) - iterations) / (iterations.shape[1] - 1)
-    spread: Floats = 100.0 * np.sqrt(np.mean((iterations / others - 1.0) ** 2, axis=0))
-    return spread

@@ -56,6 +56,17 @@ def number_claim(section: str, statement: str, paper: float, sample: ArrayLike, 
     return Claim(section, statement, paper, float(known.mean()), low, high, float(percentile), verdict, note)
 
 
+def distance_claim(section: str, statement: str, paper: float, sample: ArrayLike, note: str) -> Claim:
+    """How far the paper is from us: reproduced if 95% of our replicates are not all nearer to the others."""
+    known = _known(sample)
+    if math.isnan(paper) or not len(known):
+        return untestable_claim(section, statement, paper, known, "all our replicates have the same numbers")
+    farthest = float(np.percentile(known, CENTRAL))
+    percentile = 100.0 * float(np.mean(known < paper) + np.mean(known == paper) / 2.0)
+    verdict = REPRODUCED if paper <= farthest else NOT_REPRODUCED
+    return Claim(section, statement, paper, float(known.mean()), 0.0, farthest, percentile, verdict, note)
+
+
 def holds_claim(section: str, statement: str, sample: ArrayLike, note: str = "") -> Claim:
     """That something is so: reproduced if it is in 95% of the replicates. Ours is that share, in percent."""
     share = 100.0 * float(np.mean(np.asarray(sample, dtype=bool)))

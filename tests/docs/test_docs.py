@@ -149,6 +149,8 @@ def test_every_reading_is_documented() -> None:
         ),
         ("measured_coverage.py", "--trials 3 --parts mean", "| mean, Student's t | normal | 5 | 95.0% |"),
         ("fit_of_readings.py", "--replicates 2 --readings literal --jobs 2", "| `literal` | zero table"),
+        ("elimination.py", "--replicates 2 --rows SARSA any --episodes 9", "| SARSA draws a' anew | 2 | "),
+        ("cost_of_the_protocol.py", "--replicates 2 --episodes 9", "| a goal that nothing follows | "),
     ],
 )
 def test_scripts_run(script: str, arguments: str, expected: str, tmp_path: Path) -> None:

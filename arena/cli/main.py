@@ -9,6 +9,7 @@ from typing import Any
 import typer
 
 from arena.cli.agents import add_commands
+from arena.cli.cache import add_commands as add_cache_command
 from arena.cli.console import BAD_INPUT, BUG, INTERRUPTED, InterruptedRunError, say, say_bug
 from arena.cli.curves import add_commands as add_curves_command
 from arena.cli.paper import add_commands as add_paper_command
@@ -37,6 +38,7 @@ add_race_command(app)
 add_curves_command(app)
 add_paper_command(app)
 add_walk_command(app)
+add_cache_command(app)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

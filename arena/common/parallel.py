@@ -9,6 +9,8 @@ from contextlib import suppress
 from functools import cache
 from typing import Any
 
+from envs.foundation.notices import held_back, hold_back, tell_once
+
 
 def parallel_map_unordered(
     n_jobs: int, function: Callable[..., Any], tasks: list[Any], *, apart: bool = False
@@ -35,7 +37,9 @@ def parallel_map_unordered(
         parallel = joblib.Parallel(max_nbytes=None, **options)
     results = parallel(joblib.delayed(_serve)(os.getpid(), function, task) for task in tasks)
     try:
-        for result in results:  # noqa: UP028 (``yield from`` would close it before the warning is off)
+        for result, notices in results:
+            for notice in notices:
+                tell_once(notice)
             yield result
     finally:
         with warnings.catch_warnings(), suppress(AttributeError):  # a list needs no closing
@@ -43,11 +47,12 @@ def parallel_map_unordered(
             results.close()
 
 
-def _serve(parent: int, function: Callable[..., Any], task: tuple[Any, ...]) -> Any:
-    """In a worker: call ``function``, and do not outlive the parent."""
+def _serve(parent: int, function: Callable[..., Any], task: tuple[Any, ...]) -> tuple[Any, list[str]]:
+    """In a worker: what ``function`` returns and what the parent is to tell; not to outlive the parent."""
     if os.getpid() != parent:
         _leave_with(parent)
-    return function(*task)
+        hold_back()
+    return function(*task), held_back()
 
 
 @cache

@@ -14,7 +14,7 @@ from arena.execution.checkpoint import checkpoint_of
 from arena.execution.loops import TrainingLoop, evaluate, evaluation_loop, train, training_loop
 from arena.tournament.conditions import Conditions, Run
 from arena.tournament.outcome import Outcome
-from envs.compilation.kernels import compile_loop
+from envs.compilation.kernels import compile_loop, kernel_info
 from envs.compilation.reachable import ReachableCode
 
 NAME = "compiled"
@@ -41,8 +41,8 @@ def prepare(conditions: Conditions, run: Run, agent: Any) -> None:
     Raises:
         envs.compilation.CompilationError: when the agent cannot be compiled.
     """
-    compile_loop(train, training_loop(conditions, run, agent), 0, 0)
-    compile_loop(evaluate, evaluation_loop(conditions, run, agent))
+    kernel_info(train, training_loop(conditions, run, agent), 0, 0)
+    kernel_info(evaluate, evaluation_loop(conditions, run, agent))
 
 
 def fingerprint(conditions: Conditions, run: Run, agent: Any) -> str:

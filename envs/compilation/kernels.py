@@ -6,16 +6,12 @@ numba under its own name. So one source is both interpreted and compiled, and it
 know numba.
 """
 
-import contextlib
-import os
 import re
-import tempfile
 import threading
-from collections.abc import Callable, Iterator
-from functools import lru_cache
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from envs.compilation.kernel_folder import kernel_folder
 from envs.compilation.numba_methods import _register
 from envs.compilation.reachable import ReachableCode
 from envs.foundation.errors import InvalidTypeError
@@ -60,7 +56,8 @@ class CompilationError(InvalidTypeError):
 def compile_loop(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
     """``loop`` compiled for arguments of the types of ``example``.
 
-    Nothing is run. The machine code is cached on disk under a fingerprint of everything compiled in.
+    Nothing is run. The machine code is cached on disk under a fingerprint of everything compiled in. With
+    ``NUMBA_DISABLE_JIT`` set it is ``loop`` itself: slower, and to the same results.
 
     Args:
         loop: a module-level function within numba's subset of Python.
@@ -71,6 +68,8 @@ def compile_loop(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
     """
     import numba
 
+    if numba.config.DISABLE_JIT:
+        return loop
     kernel = _compiled(loop, example)
     if tuple(map(numba.typeof, example)) == kernel.types:
         return kernel.dispatcher  # type: ignore[no-any-return]  # numba is untyped
@@ -83,7 +82,7 @@ def kernel_info(loop: Callable[..., Any], *example: Any) -> KernelInfo:
     """What ``loop``, compiled for arguments of the types of ``example``, is like.
 
     Raises:
-        CompilationError: when numba cannot compile it.
+        CompilationError: when numba cannot compile it, or ``NUMBA_DISABLE_JIT`` is set.
     """
     return _compiled(loop, example).info
 
@@ -95,30 +94,16 @@ def entry_point(loop: Callable[..., Any], *example: Any) -> Callable[..., Any]:
     0.2 ms. A call of this does not: other types are undefined behaviour.
 
     Raises:
-        CompilationError: when numba cannot compile it.
+        CompilationError: when numba cannot compile it, or ``NUMBA_DISABLE_JIT`` is set.
     """
     return _compiled(loop, example).entry_point
 
 
-def cache_directory() -> Path | None:
-    """Where machine code is kept: ``$ARENA_CACHE_DIR`` or the user's cache folder; None if not writable."""
-    import platformdirs
-
-    chosen = os.environ.get("ARENA_CACHE_DIR")
-    return _writable(Path(chosen) if chosen else platformdirs.user_cache_path("mountain-car-arena"))
-
-
-@lru_cache
-def _writable(folder: Path) -> Path | None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
-        return None
-    return folder
-
-
 def _compiled(loop: Callable[..., Any], example: tuple[Any, ...]) -> _Kernel:
+    import numba
+
+    if numba.config.DISABLE_JIT:
+        raise CompilationError("NUMBA_DISABLE_JIT is set")
     reached = ReachableCode(loop, *example)
     fingerprint = reached.fingerprint()
     with _lock:
@@ -133,34 +118,25 @@ def _compile(
 ) -> _Kernel:
     import numba
 
+    from envs.compilation.kernel_file import KernelFile
+
     types = tuple(map(numba.typeof, example))
-    folder = cache_directory() if importable else None
+    kept = KernelFile(kernel_folder(), fingerprint) if importable else None
     # Counting references to the agent's arrays doubles the time of a step, so it is off
     # (``_nrt``) unless that fails, because the agent's own code allocates memory.
-    counted = folder / f"{fingerprint}-counted" if folder else None
-    for counting in (True,) if counted and counted.exists() else (False, True):
-        with _numba_cache(counted if counting else folder and folder / fingerprint):
-            kernel = numba.njit(loop, cache=folder is not None, **_LOOP, _nrt=counting)
+    for counting in (False, True):
+        kernel = numba.njit(loop, **_LOOP, _nrt=counting)
+        if kept:
+            kept.counts_references = counting
+            kernel._cache = kept  # noqa: SLF001 (numba has no other way in)
         try:
             kernel.compile(types)
         except Exception as error:  # numba raises nearly anything
             problem = error
         else:
-            return _Kernel(kernel, types, KernelInfo(fingerprint, counting))
+            counts = kept.counts_references if kept else counting
+            return _Kernel(kernel, types, KernelInfo(fingerprint, counts))
     raise CompilationError(_reason(problem)) from problem
-
-
-@contextlib.contextmanager
-def _numba_cache(folder: Path | None) -> Iterator[None]:
-    """Have numba put the cache of functions that are decorated meanwhile into ``folder``."""
-    from numba.core import config
-
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(folder or "")
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = before
 
 
 def _importable(parts: tuple[Any, ...]) -> bool:

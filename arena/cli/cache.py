@@ -1,0 +1,42 @@
+"""The command ``arena cache``."""
+
+import json
+from typing import Annotated
+
+import typer
+
+from arena.cli.options import AsJson
+
+
+def cache(
+    prune: Annotated[bool, typer.Option("--prune", help="Remove what has not been used for long.")] = False,
+    days: Annotated[int, typer.Option(help="How long that is.", metavar="N", min=0)] = 30,
+    as_json: AsJson = False,
+) -> None:
+    """Show the folder of compiled kernels, how many there are and their size; or clear it up."""
+    from envs.compilation.kernel_folder import kept_kernels, kernel_folder, remove, unused
+
+    folder = kernel_folder()
+    kernels = list(kept_kernels(folder))
+    old = [kernel for kernel in kernels if unused(kernel, days)]
+    if prune:
+        for kernel in old:
+            remove(kernel.path)
+        kernels = [kernel for kernel in kernels if kernel not in old]
+    counts = {"kernels": len(kernels), "bytes": sum(kernel.size for kernel in kernels)}
+    word = "removed" if prune else "unused"
+    old_counts = {word: len(old), f"{word}_bytes": sum(kernel.size for kernel in old)}
+    if as_json:
+        print(json.dumps({"folder": str(folder), "days": days, **counts, **old_counts}))
+        return
+    print(f"{folder}: {_words(*counts.values())}")
+    print(f"{word}, not used for {days} days: {_words(*old_counts.values())}")
+
+
+def _words(kernels: int, size: int) -> str:
+    return f"{kernels} kernel{'s' * (kernels != 1)}, {size / 1e6:.1f} MB"
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Make it a command of ``app``."""
+    app.command()(cache)

@@ -1,0 +1,126 @@
+"""The folder of kernels: where it is, what lies in it, and what is thrown away.
+
+A kernel is a file; its time of modification is when it was last used. Versions before 0.2 had folders.
+"""
+
+import os
+import re
+import shutil
+import tempfile
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+DAY = 86400.0
+DAYS = 30
+"""How long a kernel is kept that is not used."""
+
+# A fingerprint and what follows it: folders of 0.1, kernels, and halves of kernels whose writer was killed.
+_OURS = re.compile(r"[0-9a-f]{32}(-counted)?(\..+)?")
+_SWEPT = "swept"  # the file that says when all was last looked through
+_PATIENCE = 0.005  # seconds of a compilation that may go into sweeping
+
+
+class Kept(NamedTuple):
+    """A kernel on disk: where, its size in bytes, and when it was last used, in seconds since 1970."""
+
+    path: Path
+    size: int
+    used: float
+
+
+def cache_directory() -> Path | None:
+    """Where machine code is kept: ``$ARENA_CACHE_DIR`` or the user's cache folder; None if not writable."""
+    return _writable(kernel_folder())
+
+
+def kernel_folder() -> Path:
+    """Where machine code is looked for; there need be nothing."""
+    import platformdirs
+
+    chosen = os.environ.get("ARENA_CACHE_DIR")
+    return Path(chosen) if chosen else platformdirs.user_cache_path("mountain-car-arena")
+
+
+def kept_kernels(folder: Path) -> Iterator[Kept]:
+    """What lies in ``folder``; nothing if there is none.
+
+    Raises:
+        OSError: when it cannot be read.
+    """
+    names = sorted(os.listdir(folder)) if folder.exists() else []
+    for path in (folder / name for name in names if _OURS.fullmatch(name)):
+        with suppress(FileNotFoundError):  # another process has removed it
+            inside = [Path(base, file) for base, _, files in os.walk(path) for file in files]
+            states = [path.lstat(), *(file.lstat() for file in inside)]
+            size = sum(state.st_size for state in (states[1:] if path.is_dir() else states))
+            yield Kept(path, size, max(state.st_mtime for state in states))
+
+
+def unused(kernel: Kept, days: float) -> bool:
+    """Whether it has not been used for so long."""
+    return time.time() - kernel.used >= days * DAY
+
+
+def remove(path: Path) -> None:
+    """Remove a kernel, whatever is in its place, if anything.
+
+    Raises:
+        OSError: when it cannot be removed.
+    """
+    with suppress(FileNotFoundError):
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a kernel as a whole or not at all; of several processes that do so, the last one's stays.
+
+    Raises:
+        OSError: when it cannot be written.
+    """
+    with suppress(FileExistsError):
+        path.parent.mkdir(parents=True)
+    half = path.with_name(f"{path.name}.{uuid.uuid4().hex[:16]}")
+    try:
+        half.write_bytes(content)
+        if path.is_dir():
+            remove(path)
+        half.replace(path)
+    finally:
+        with suppress(OSError):
+            half.unlink(missing_ok=True)
+
+
+def sweep(folder: Path) -> None:
+    """Remove what has not been used for long: once a day, in a few milliseconds, over several calls if need be.
+
+    What cannot be removed stays.
+    """
+    began, stamp = time.perf_counter(), folder / _SWEPT
+    with suppress(OSError):
+        if stamp.exists() and not unused(Kept(stamp, 0, stamp.stat().st_mtime), 1):
+            return
+        for kernel in kept_kernels(folder):
+            if unused(kernel, DAYS):
+                with suppress(OSError):
+                    remove(kernel.path)
+            if time.perf_counter() - began > _PATIENCE:
+                return
+        stamp.touch()
+
+
+@lru_cache
+def _writable(folder: Path) -> Path | None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return None
+    return folder

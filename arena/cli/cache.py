@@ -14,18 +14,18 @@ def cache(
     as_json: AsJson = False,
 ) -> None:
     """Show the folder of compiled kernels, how many there are and their size; or clear it up."""
-    from envs.compilation.kernel_folder import kept_kernels, kernel_folder, remove, unused
+    from envs.compilation.kernel_folder import kept_kernels, kernel_folder
 
     folder = kernel_folder()
-    kernels = list(kept_kernels(folder))
-    old = [kernel for kernel in kernels if unused(kernel, days)]
+    kernels = {kernel: kernel.size() for kernel in kept_kernels(folder)}
+    old = {kernel: size for kernel, size in kernels.items() if kernel.unused(days)}
     if prune:
         for kernel in old:
-            remove(kernel.path)
-        kernels = [kernel for kernel in kernels if kernel not in old]
-    counts = {"kernels": len(kernels), "bytes": sum(kernel.size for kernel in kernels)}
+            kernel.remove()
+            del kernels[kernel]
     word = "removed" if prune else "unused"
-    old_counts = {word: len(old), f"{word}_bytes": sum(kernel.size for kernel in old)}
+    counts = {"kernels": len(kernels), "bytes": sum(kernels.values())}
+    old_counts = {word: len(old), f"{word}_bytes": sum(old.values())}
     if as_json:
         print(json.dumps({"folder": str(folder), "days": days, **counts, **old_counts}))
         return

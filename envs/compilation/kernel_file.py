@@ -71,7 +71,9 @@ class KernelFile(Cache):  # type: ignore[misc]  # numba is untyped
             parts = kernel._reduce()  # noqa: SLF001 (as numba's cache does)
             write(path, _sealed(dumps((types, self.counts_references, parts)), path, key))
         except OSError as error:
-            tell_once(f"kernels are compiled anew each time, none is kept in {self._folder}: {error.strerror}")
+            tell_once(
+                f"kernels are compiled anew each time, none is kept in {self._folder}: {error.strerror}"
+            )
         except Exception:  # whatever a class raises that is pickled
             _log.debug("kernel %s cannot be kept", path, exc_info=True)
         else:

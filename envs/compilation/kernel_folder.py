@@ -10,7 +10,7 @@ import tempfile
 import time
 import uuid
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -26,11 +26,35 @@ _PATIENCE = 0.005  # seconds of a compilation that may go into sweeping
 
 
 class Kept(NamedTuple):
-    """A kernel on disk: where, its size in bytes, and when it was last used, in seconds since 1970."""
+    """A kernel on disk: where, and when it was last used, in seconds since 1970."""
 
     path: Path
-    size: int
     used: float
+
+    def unused(self, days: float) -> bool:
+        """Whether it has not been used for so long."""
+        return time.time() - self.used >= days * DAY
+
+    def size(self) -> int:
+        """In bytes."""
+        inside = [Path(folder, file) for folder, _, files in os.walk(self.path) for file in files]
+        size = 0
+        for file in inside or [self.path]:
+            with suppress(FileNotFoundError):  # another process has removed it
+                size += file.lstat().st_size
+        return size
+
+    def remove(self) -> None:
+        """Remove it, whatever is in its place, if anything.
+
+        Raises:
+            OSError: when it cannot be removed.
+        """
+        with suppress(FileNotFoundError):
+            if self.path.is_dir() and not self.path.is_symlink():
+                shutil.rmtree(self.path)
+            else:
+                self.path.unlink()
 
 
 def cache_directory() -> Path | None:
@@ -47,36 +71,18 @@ def kernel_folder() -> Path:
 
 
 def kept_kernels(folder: Path) -> Iterator[Kept]:
-    """What lies in ``folder``; nothing if there is none.
+    """What lies in ``folder``, in any order; nothing if there is none.
 
     Raises:
         OSError: when it cannot be read.
     """
-    names = sorted(os.listdir(folder)) if folder.exists() else []
-    for path in (folder / name for name in names if _OURS.fullmatch(name)):
+    with os.scandir(folder) if folder.exists() else nullcontext(()) as entries:
+        names = {entry.name for entry in entries if _OURS.fullmatch(entry.name)}
+    # A set has another order in each process: ``sweep``, which may not come to the end, comes to each.
+    for name in names:
+        path = folder / name
         with suppress(FileNotFoundError):  # another process has removed it
-            inside = [Path(base, file) for base, _, files in os.walk(path) for file in files]
-            states = [path.lstat(), *(file.lstat() for file in inside)]
-            size = sum(state.st_size for state in (states[1:] if path.is_dir() else states))
-            yield Kept(path, size, max(state.st_mtime for state in states))
-
-
-def unused(kernel: Kept, days: float) -> bool:
-    """Whether it has not been used for so long."""
-    return time.time() - kernel.used >= days * DAY
-
-
-def remove(path: Path) -> None:
-    """Remove a kernel, whatever is in its place, if anything.
-
-    Raises:
-        OSError: when it cannot be removed.
-    """
-    with suppress(FileNotFoundError):
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path)
-        else:
-            path.unlink()
+            yield Kept(path, path.lstat().st_mtime)
 
 
 def write(path: Path, content: bytes) -> None:
@@ -91,7 +97,7 @@ def write(path: Path, content: bytes) -> None:
     try:
         half.write_bytes(content)
         if path.is_dir():
-            remove(path)
+            Kept(path, 0.0).remove()
         half.replace(path)
     finally:
         with suppress(OSError):
@@ -99,18 +105,18 @@ def write(path: Path, content: bytes) -> None:
 
 
 def sweep(folder: Path) -> None:
-    """Remove what has not been used for long: once a day, in a few milliseconds, over several calls if need be.
+    """Remove what has not been used for long: once a day, and in a few milliseconds.
 
-    What cannot be removed stays.
+    What there is no time for is left to the next call, what cannot be removed stays.
     """
     began, stamp = time.perf_counter(), folder / _SWEPT
     with suppress(OSError):
-        if stamp.exists() and not unused(Kept(stamp, 0, stamp.stat().st_mtime), 1):
+        if stamp.exists() and not Kept(stamp, stamp.lstat().st_mtime).unused(days=1):
             return
         for kernel in kept_kernels(folder):
-            if unused(kernel, DAYS):
+            if kernel.unused(DAYS):
                 with suppress(OSError):
-                    remove(kernel.path)
+                    kernel.remove()
             if time.perf_counter() - began > _PATIENCE:
                 return
         stamp.touch()

@@ -12,7 +12,7 @@ from paths import ROOT
 
 from agents import QLearning, Sarsa
 from envs import Hill
-from envs.compilation import CompilationError, compile_loop, entry_point
+from envs.compilation import CompilationError, compile_loop, entry_point, kernel_info
 from envs.compilation.reachable import ReachableCode
 
 PLUGIN = """
@@ -148,6 +148,16 @@ def test_another_object_of_the_same_class_as_workers_unpickle_it_runs_the_same_c
         for _ in range(2):
             holder = Holder(make_class(factor)(2.0), 10.0)
             assert hand_out(call_held, holder)(holder) == call_held(holder) == 20.0 * factor
+
+
+def test_with_numbas_switch_for_debugging_the_loop_itself_is_returned(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("numba.config.DISABLE_JIT", 1)
+    assert compile_loop(call_both, One(1.0), Other(1.0)) is call_both
+    for what in (kernel_info, entry_point):
+        with pytest.raises(CompilationError, match=r"^NUMBA_DISABLE_JIT is set$"):
+            what(call_both, One(1.0), Other(1.0))
 
 
 def test_numbas_own_cache_folder_is_left_as_it_was() -> None:

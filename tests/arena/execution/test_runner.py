@@ -73,6 +73,21 @@ def test_a_class_that_cannot_be_compiled_runs_interpreted_and_the_reason_is_said
     ]
 
 
+def test_with_numbas_switch_for_debugging_all_run_interpreted_to_the_same_bits(
+    small: Tournament, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    with run(small, n_jobs=1) as compiled:
+        expected = bits_of(compiled)
+    monkeypatch.setattr("numba.config.DISABLE_JIT", 1)
+    with caplog.at_level(logging.WARNING, "arena"), run(small, n_jobs=1) as results:
+        assert bits_of(results) == expected
+        assert set(results.frame().driver) == {"pettingzoo"}
+    reason = "runs interpreted: NUMBA_DISABLE_JIT is set"
+    assert caplog.messages == [f"QLearning {reason}", f"Sarsa {reason}"]
+    with pytest.raises(ValueError, match=r"^entrant 'q' cannot be compiled: NUMBA_DISABLE_JIT is set$"):
+        run(small, n_jobs=1, driver="compiled")
+
+
 def test_the_compiled_driver_refuses_what_it_cannot_compile_before_anything_is_written(
     tmp_path: Path,
 ) -> None:

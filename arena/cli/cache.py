@@ -30,7 +30,9 @@ def cache(
         print(json.dumps({"folder": str(folder), "days": days, **counts, **old_counts}))
         return
     print(f"{folder}: {_words(*counts.values())}")
-    print(f"{word}, not used for {days} days: {_words(*old_counts.values())}")
+    print(
+        f"{'removed, as' if prune else 'of these'} not used for {days} days: {_words(*old_counts.values())}"
+    )
 
 
 def _words(kernels: int, size: int) -> str:

@@ -42,6 +42,7 @@ class KernelFile(Cache):  # type: ignore[misc]  # numba is untyped
 
     def __init__(self, folder: Path, fingerprint: str) -> None:
         self._folder, self._fingerprint = folder, fingerprint
+        self._cache_path = str(folder)  # for numba's statistics
         self.counts_references = False
         self.enable()
 

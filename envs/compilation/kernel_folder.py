@@ -99,6 +99,9 @@ def write(path: Path, content: bytes) -> None:
         if path.is_dir():
             Kept(path, 0.0).remove()
         half.replace(path)
+    except PermissionError:
+        if os.name != "nt" or not path.is_file():  # on Windows a process that reads it is in the way
+            raise
     finally:
         with suppress(OSError):
             half.unlink(missing_ok=True)

@@ -41,7 +41,7 @@ def test_it_shows_the_folder_the_number_of_kernels_and_their_size(
     assert main(["cache"]) == 0
     assert capsys.readouterr().out.splitlines() == [
         f"{folder}: 3 kernels, 1.8 MB",
-        "unused, not used for 30 days: 2 kernels, 0.8 MB",
+        "of these not used for 30 days: 2 kernels, 0.8 MB",
     ]
     assert main(["cache", "--json", "--days", "50"]) == 0
     shown = json.loads(capsys.readouterr().out)
@@ -60,7 +60,7 @@ def test_prune_removes_what_has_not_been_used_and_nothing_that_is_not_ours(
     assert main(["cache", "--prune"]) == 0
     assert capsys.readouterr().out.splitlines() == [
         f"{folder}: 1 kernel, 1.0 MB",
-        "removed, not used for 30 days: 2 kernels, 0.8 MB",
+        "removed, as not used for 30 days: 2 kernels, 0.8 MB",
     ]
     assert names(folder) == {f"{MARK}.cafe.nbc", "letter.txt"}
     assert main(["cache", "--prune", "--days", "0"]) == 0

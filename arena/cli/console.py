@@ -3,6 +3,8 @@
 import sys
 from typing import TYPE_CHECKING
 
+from arena.cli.streams import stdout
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -16,11 +18,18 @@ class InterruptedRunError(Exception):
     """Ctrl-C while runs were written to a file, the only argument."""
 
 
-def terminal() -> "Console":
-    """Return the console on stdout; it colours no numbers and breaks no lines."""
+def terminal(*, stderr: bool = False) -> "Console":
+    """Return the console for results, or that on stderr; it colours no numbers and breaks no lines."""
     from rich.console import Console
 
-    return Console(highlight=False, soft_wrap=True)
+    console = Console(file=sys.stderr if stderr else stdout(), highlight=False, soft_wrap=True)
+    console.width = console.width or 80  # COLUMNS=0 is no width
+    return console
+
+
+def write(text: str, end: str = "\n") -> None:
+    """Print a result, on stdout."""
+    print(text, end=end, file=stdout())
 
 
 def say(sentence: str) -> None:

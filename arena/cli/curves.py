@@ -1,12 +1,11 @@
 """The command ``arena curves``: how fast the entrants learn."""
 
 import json
-import sys
 from typing import Annotated
 
 import typer
 
-from arena.cli.console import terminal
+from arena.cli.console import terminal, write
 from arena.cli.options import AsJson, Confidence, File
 from envs.foundation.errors import InvalidValueError
 
@@ -35,12 +34,12 @@ def curves(
     with load(file) as results:
         frame = learning_curves(results, level, window)
     if as_csv:
-        frame.to_csv(sys.stdout, index=False)
+        write(frame.to_csv(index=False, lineterminator="\n"), end="")
         return
     rows = summaries(frame, confidence)
     if as_json:
         report = {"level": level, "window": window, "entrants": without_nan(rows)}
-        print(json.dumps(report, allow_nan=False))
+        write(json.dumps(report, allow_nan=False))
     else:
         terminal().print(render(rows, level, window, confidence))
 

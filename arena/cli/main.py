@@ -18,6 +18,7 @@ from arena.cli.race import add_commands as add_race_command
 from arena.cli.report import add_commands as add_report_command
 from arena.cli.results import add_commands as add_result_commands
 from arena.cli.run import add_commands as add_run_commands
+from arena.cli.streams import results_apart, take_over, usable
 from arena.cli.walk import add_commands as add_walk_command
 from envs.foundation.errors import ArenaError, InvalidValueError
 
@@ -48,11 +49,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code: 0; 1 where an entrant failed or a check did; 2 for bad input, which is told in one
         sentence; 70 for a mistake of our own, with its traceback; 130 after Ctrl-C.
     """
-    command = typer.main.get_command(app)
-    given = list(sys.argv[1:] if arguments is None else arguments)
+    with usable():
+        return _run(list(sys.argv[1:] if arguments is None else arguments))
+
+
+def _run(given: list[str]) -> int:
+    """Run the command line; the exit code."""
+    group = typer.main.get_group(app)
+    for command in group.commands.values():
+        command.callback = results_apart()(command.callback)  # type: ignore[type-var]  # there is one
     try:
         _check_encodable(given)
-        code = command.main(args=given, prog_name="arena", standalone_mode=False)
+        code = group.main(args=given, prog_name="arena", standalone_mode=False)
     except typer.Exit as stop:
         return stop.exit_code
     except InterruptedRunError as stop:
@@ -61,9 +69,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return INTERRUPTED
     except (typer.Abort, KeyboardInterrupt):
         return INTERRUPTED
-    except BrokenPipeError:  # the reader, such as head, has seen enough
-        sys.stderr.close()
-        return 0
     except Exception as error:
         return _tell(error, given)
     return code if isinstance(code, int) else 0
@@ -109,4 +114,7 @@ def _received(error: Any, arguments: list[str]) -> str:
 
 def entry() -> None:
     """The console command."""
-    sys.exit(main())
+    take_over()
+    code = main()
+    sys.stdout = sys.stderr  # what agents print at exit is no result
+    sys.exit(code)

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from arena.cli.console import write
 from arena.cli.options import File
 
 
@@ -37,7 +38,7 @@ def race(
         show(driven)
     else:
         save_race(driven, out)
-    print("\n".join(driven.captions.values()))
+    write("\n".join(driven.captions.values()))
 
 
 def add_commands(app: typer.Typer) -> None:

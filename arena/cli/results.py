@@ -2,14 +2,13 @@
 
 import json
 import re
-import sys
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from arena.cli.console import terminal
+from arena.cli.console import terminal, write
 from arena.cli.options import AsJson, By, Confidence, File
 from envs.foundation.errors import InvalidValueError
 
@@ -53,9 +52,10 @@ def print_results(
         board = leaderboard(results, by or "steps", confidence).to_dict()
         paper = compare_with_paper(results)
         extra = {"paper": paper.to_dict()} if paper else {}
-        print(json.dumps({**results.to_dict(), "leaderboard": board, **extra}, allow_nan=False))
+        write(json.dumps({**results.to_dict(), "leaderboard": board, **extra}, allow_nan=False))
     elif as_csv:
-        leaderboard(results, by or "steps", confidence).frame().to_csv(sys.stdout, index=False)
+        frame = leaderboard(results, by or "steps", confidence).frame()
+        write(frame.to_csv(index=False, lineterminator="\n"), end="")
     else:
         console = terminal()
         console.print(render(results, by, confidence))
@@ -98,9 +98,7 @@ def compare(
 def _patience(by: By | None) -> AbstractContextManager[Any]:
     """Says on a terminal what takes so long."""
     if by is By.REGRET:
-        from rich.console import Console
-
-        console = Console(stderr=True)
+        console = terminal(stderr=True)
         if console.is_terminal:
             return console.status("searching the fewest steps from each start of the test")
     return nullcontext()
@@ -123,7 +121,7 @@ def _print_comparison(
 
     comparison = compare_entrants(results, a, b, by, confidence)
     if as_json:
-        print(json.dumps(comparison.to_dict(), allow_nan=False))
+        write(json.dumps(comparison.to_dict(), allow_nan=False))
     else:
         terminal().print(comparison_text(comparison))
 
@@ -142,7 +140,7 @@ def _print_changes(
     if as_json:
         report = {"by": by, "regressed": regressed, "only_new": only_new, "only_baseline": only_old}
         entrants = [change.to_dict() for change in changes]
-        print(json.dumps({**report, "entrants": entrants}, allow_nan=False))
+        write(json.dumps({**report, "entrants": entrants}, allow_nan=False))
     else:
         terminal().print(changes_text(changes, by, only_new, only_old))
     return regressed

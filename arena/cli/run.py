@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from arena.cli.console import SOME_FAILED, InterruptedRunError, say
+from arena.cli.console import SOME_FAILED, InterruptedRunError, say, write
 from arena.cli.options import Plugins, load_plugins
 from arena.cli.progress import progress_bar
 from arena.cli.report import page_of
@@ -104,7 +104,7 @@ def digest(file: Annotated[Path, typer.Argument(help="Results file.", metavar="F
     from arena.results.results import load
 
     with load(file) as results:
-        print(digest_of(results))
+        write(digest_of(results))
 
 
 def verify(
@@ -120,9 +120,9 @@ def verify(
     with load(file) as results:
         difference = next(differences(results, runs), None)
     if difference:
-        print(difference)
+        write(difference)
         raise typer.Exit(SOME_FAILED)
-    print("no difference")
+    write("no difference")
 
 
 def _default_file(name: str) -> Path:

@@ -71,7 +71,7 @@ def _imported(name: str, file: Path, _edited: int) -> tuple[str, ...]:
     """What the text imports; parts of packages, too, which may be modules."""
     imported: list[str] = []
     package = name if file.name == "__init__.py" else name.rpartition(".")[0]
-    for base, parts, modules in _IMPORT.findall(file.read_text(encoding="utf-8", errors="replace")):
+    for base, parts, modules in _IMPORT.findall(file.read_text(encoding="utf-8-sig", errors="replace")):
         for module in modules.split(","):
             imported += re.findall(r"^\s*([.\w]+)", module)  # without its ``as``
         if base:

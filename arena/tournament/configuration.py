@@ -52,7 +52,9 @@ def read_toml(path: str | Path, what: str = "file") -> dict[str, Any]:
         ValueError: when it cannot be read; the message names it, and says ``what`` there is not.
     """
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        return tomllib.loads(
+            Path(path).read_text(encoding="utf-8-sig")
+        )  # some editors begin a file with a mark
     except FileNotFoundError:
         raise InvalidValueError(f"there is no {what} {path}") from None
     except OSError as error:

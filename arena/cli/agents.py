@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from arena.cli.console import SOME_FAILED, say, terminal, write
+from arena.cli.console import SOME_FAILED, answer, say, terminal
 from arena.cli.options import AsJson, Plugins, load_plugins
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def agents(
         say(line)
     chosen = [known[name]] if name is not None else sorted(known.values(), key=lambda entry: entry.name)
     if as_json:
-        write(json.dumps({entry.name: description(entry) for entry in chosen}))
+        answer(json.dumps({entry.name: description(entry) for entry in chosen}))
     elif name is not None:
         print_agent(terminal(), chosen[0])
     else:
@@ -50,7 +50,7 @@ def new_agent(
     from arena.plugins.template import write
 
     agent, test = write(name, folder)
-    write(f"wrote {agent} and {test}; next: arena check {agent}")
+    answer(f"wrote {agent} and {test}; next: arena check {agent}")
 
 
 def check(
@@ -70,7 +70,7 @@ def check(
     chosen = load_plugin(target) if target.endswith(".py") else {target: agent_class(target)}
     reports = [_checked(Entrant(name, agent)) for name, agent in chosen.items()]
     if as_json:
-        write(json.dumps(reports))
+        answer(json.dumps(reports))
     else:
         for report in reports:
             print_checks(terminal(), report)

@@ -27,7 +27,7 @@ def terminal(*, stderr: bool = False) -> "Console":
     return console
 
 
-def write(text: str, end: str = "\n") -> None:
+def answer(text: str, end: str = "\n") -> None:
     """Print a result, on stdout."""
     print(text, end=end, file=stdout())
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from arena.cli.console import terminal, write
+from arena.cli.console import answer, terminal
 from arena.cli.options import AsJson, Confidence, File
 from envs.foundation.errors import InvalidValueError
 
@@ -34,12 +34,12 @@ def curves(
     with load(file) as results:
         frame = learning_curves(results, level, window)
     if as_csv:
-        write(frame.to_csv(index=False, lineterminator="\n"), end="")
+        answer(frame.to_csv(index=False, lineterminator="\n"), end="")
         return
     rows = summaries(frame, confidence)
     if as_json:
         report = {"level": level, "window": window, "entrants": without_nan(rows)}
-        write(json.dumps(report, allow_nan=False))
+        answer(json.dumps(report, allow_nan=False))
     else:
         terminal().print(render(rows, level, window, confidence))
 

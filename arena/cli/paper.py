@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from arena.cli.console import terminal, write
+from arena.cli.console import answer, terminal
 from arena.cli.options import AsJson, File
 from envs.foundation.errors import InvalidValueError
 
@@ -40,7 +40,7 @@ def paper(
         if markdown is not None:
             markdown.write_text("\n".join(markdown_lines(results, claims, title)), encoding="utf-8")
     if as_json:
-        write(json.dumps([claim.to_dict() for claim in claims], allow_nan=False))
+        answer(json.dumps([claim.to_dict() for claim in claims], allow_nan=False))
     else:
         terminal().print(render(claims, title))
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from arena.cli.console import write
+from arena.cli.console import answer
 from arena.cli.options import By, File
 from envs.foundation.errors import InvalidValueError
 
@@ -64,7 +64,7 @@ def plot(
     with load(file) as results:
         figure = _DRAW[kind](results, entrant, replicate, by.value)
     figure.savefig(out, dpi=dpi, metadata={"Date": None} if out.suffix.lower() == ".svg" else None)
-    write(str(out))
+    answer(str(out))
 
 
 def _learning(results: "Results", named: list[str] | None, _replicate: int, _by: str) -> "Figure":

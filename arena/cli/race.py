@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from arena.cli.console import write
+from arena.cli.console import answer
 from arena.cli.options import File
 
 
@@ -38,7 +38,7 @@ def race(
         show(driven)
     else:
         save_race(driven, out)
-    write("\n".join(driven.captions.values()))
+    answer("\n".join(driven.captions.values()))
 
 
 def add_commands(app: typer.Typer) -> None:

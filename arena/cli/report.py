@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from arena.cli.console import write
+from arena.cli.console import answer
 from arena.cli.options import By, Confidence, File
 
 
@@ -25,7 +25,7 @@ def report(
     with load(file) as results:
         out = out or page_of(file)
         write_report(results, out, by.value, confidence)
-    write(str(out))
+    answer(str(out))
 
 
 def page_of(file: Path) -> Path:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from arena.cli.console import terminal, write
+from arena.cli.console import answer, terminal
 from arena.cli.options import AsJson, By, Confidence, File
 from envs.foundation.errors import InvalidValueError
 
@@ -52,10 +52,10 @@ def print_results(
         board = leaderboard(results, by or "steps", confidence).to_dict()
         paper = compare_with_paper(results)
         extra = {"paper": paper.to_dict()} if paper else {}
-        write(json.dumps({**results.to_dict(), "leaderboard": board, **extra}, allow_nan=False))
+        answer(json.dumps({**results.to_dict(), "leaderboard": board, **extra}, allow_nan=False))
     elif as_csv:
         frame = leaderboard(results, by or "steps", confidence).frame()
-        write(frame.to_csv(index=False, lineterminator="\n"), end="")
+        answer(frame.to_csv(index=False, lineterminator="\n"), end="")
     else:
         console = terminal()
         console.print(render(results, by, confidence))
@@ -121,7 +121,7 @@ def _print_comparison(
 
     comparison = compare_entrants(results, a, b, by, confidence)
     if as_json:
-        write(json.dumps(comparison.to_dict(), allow_nan=False))
+        answer(json.dumps(comparison.to_dict(), allow_nan=False))
     else:
         terminal().print(comparison_text(comparison))
 
@@ -140,7 +140,7 @@ def _print_changes(
     if as_json:
         report = {"by": by, "regressed": regressed, "only_new": only_new, "only_baseline": only_old}
         entrants = [change.to_dict() for change in changes]
-        write(json.dumps({**report, "entrants": entrants}, allow_nan=False))
+        answer(json.dumps({**report, "entrants": entrants}, allow_nan=False))
     else:
         terminal().print(changes_text(changes, by, only_new, only_old))
     return regressed

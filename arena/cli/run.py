@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from arena.cli.console import SOME_FAILED, InterruptedRunError, say, write
+from arena.cli.console import SOME_FAILED, InterruptedRunError, answer, say
 from arena.cli.options import Plugins, load_plugins
 from arena.cli.progress import progress_bar
 from arena.cli.report import page_of
@@ -104,7 +104,7 @@ def digest(file: Annotated[Path, typer.Argument(help="Results file.", metavar="F
     from arena.results.results import load
 
     with load(file) as results:
-        write(digest_of(results))
+        answer(digest_of(results))
 
 
 def verify(
@@ -120,9 +120,9 @@ def verify(
     with load(file) as results:
         difference = next(differences(results, runs), None)
     if difference:
-        write(difference)
+        answer(difference)
         raise typer.Exit(SOME_FAILED)
-    write("no difference")
+    answer("no difference")
 
 
 def _default_file(name: str) -> Path:

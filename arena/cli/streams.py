@@ -1,8 +1,8 @@
 """The streams of the command: results on stdout, all else on stderr, whatever these two are.
 
-What is not ours prints where it likes: agents when they are imported, made, asked and at exit, here and in workers,
-and compiled code without Python's knowledge. So results have a stream of their own, and what others take for
-stdout, which is ``sys.stdout`` and the descriptor 1 that workers inherit, is stderr.
+What is not ours prints where it likes: agents when they are imported, made, asked and at exit, here and in
+workers, and compiled code without Python's knowledge. So results have a stream of their own, and what others
+take for stdout, which is ``sys.stdout`` and the descriptor 1 that workers inherit, is stderr.
 """
 
 import errno
@@ -23,7 +23,7 @@ _results: ContextVar[TextIO] = ContextVar("_results")
 class _Patient(io.FileIO):
     """A file that drops what its reader, such as ``head``, no longer wants."""
 
-    def write(self, data: "ReadableBuffer") -> int | None:
+    def write(self, data: "ReadableBuffer") -> int:
         try:
             return super().write(data)
         except OSError as error:  # EINVAL is how Windows calls a broken pipe

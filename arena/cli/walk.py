@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from arena.cli.console import INTERRUPTED, say, terminal, write
+from arena.cli.console import INTERRUPTED, answer, say, terminal
 from arena.cli.options import AsJson
 from arena.cli.progress import progress_bar
 from envs.foundation.errors import InvalidValueError
@@ -65,7 +65,7 @@ def walk(
 
             save_figure(studied, figure)
         if as_json:
-            write(text)
+            answer(text)
         else:
             terminal().print(render(studied, hill))
     if stopped:

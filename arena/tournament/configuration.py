@@ -52,9 +52,8 @@ def read_toml(path: str | Path, what: str = "file") -> dict[str, Any]:
         ValueError: when it cannot be read; the message names it, and says ``what`` there is not.
     """
     try:
-        return tomllib.loads(
-            Path(path).read_text(encoding="utf-8-sig")
-        )  # some editors begin a file with a mark
+        text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
+        return tomllib.loads(text)
     except FileNotFoundError:
         raise InvalidValueError(f"there is no {what} {path}") from None
     except OSError as error:

@@ -12,6 +12,7 @@ SOME_FAILED = 1
 BAD_INPUT = 2
 BUG = 70  # EX_SOFTWARE of sysexits.h
 INTERRUPTED = 130
+_USUAL, _NARROWEST = 80, 20  # columns of a terminal; in fewer no text can be laid out
 
 
 class InterruptedRunError(Exception):
@@ -23,7 +24,7 @@ def terminal(*, stderr: bool = False) -> "Console":
     from rich.console import Console
 
     console = Console(file=sys.stderr if stderr else stdout(), highlight=False, soft_wrap=True)
-    console.width = console.width or 80  # COLUMNS=0 is no width
+    console.width = max(console.width or _USUAL, _NARROWEST)  # COLUMNS=0 says that it is not known
     return console
 
 

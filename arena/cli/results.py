@@ -60,7 +60,7 @@ def print_results(
         console = terminal()
         console.print(render(results, by, confidence))
         if can_show(console):
-            console.print(pictures(results))
+            console.print(pictures(results, console.width))
 
 
 def compare(

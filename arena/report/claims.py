@@ -5,11 +5,11 @@ from collections import Counter
 from collections.abc import Iterator
 from datetime import UTC, datetime
 
-from rich import box
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from arena.report.fitted import FittedTable
 from arena.reproduction.verdicts import CENTRAL, NOT_TESTABLE, Claim
 from arena.results.digests import digest
 from arena.results.results import Results
@@ -68,7 +68,7 @@ def _text(value: float, digits: int) -> str:
 
 
 def _table(claims: list[Claim]) -> Table:
-    table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
+    table = FittedTable("claim", "verdict", "ours", "paper", padding=(0, 0, 0, 1), pad_edge=False)
     for name in _COLUMNS:
         right = name in {"paper", "ours", "central", "percentile"}
         table.add_column(name, justify="right" if right else "left", no_wrap=right, overflow="fold")

@@ -3,12 +3,11 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from rich import box
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
-from arena.report.tables import interval_text
+from arena.report.fitted import FittedTable
+from arena.report.tables import add_names, interval_text
 from arena.statistics.intervals import mean_interval
 
 if TYPE_CHECKING:
@@ -41,8 +40,8 @@ def summaries(frame: "pd.DataFrame", confidence: float) -> list[dict[str, Any]]:
 
 def render(rows: list[dict[str, Any]], level: float, window: int, confidence: float) -> RenderableType:
     """Return the rows as a table, and what its columns mean."""
-    table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
-    table.add_column("entrant", overflow="fold")
+    table = FittedTable("entrant", padding=(0, 0, 0, 1), pad_edge=False)
+    add_names(table, [row["entrant"] for row in rows])
     for name in ("area", "settled", "episode"):
         table.add_column(name, justify="right", no_wrap=True)
     for row in rows:

@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import ArrayLike
+from rich.cells import cell_len, set_cell_size
 from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
@@ -32,8 +33,13 @@ def sparkline(values: ArrayLike, low: float, high: float, width: int = _WIDTH) -
     return "".join(LEVELS[int(level)] for level in np.clip(shares * len(LEVELS), 0, len(LEVELS) - 1))
 
 
-def pictures(results: Results) -> RenderableType:
-    """Learning curves of the best, on one logarithmic scale, and the best policy learned; or nothing."""
+def pictures(results: Results, columns: int) -> RenderableType:
+    """Learning curves of the best, on one logarithmic scale, and the best policy learned; or nothing.
+
+    Args:
+        results: what to show.
+        columns: characters of a line, to which the pictures keep unless names are longer.
+    """
     try:
         ranked = results.best(len(results.entrants))
         names = ranked[:_BEST]
@@ -42,30 +48,34 @@ def pictures(results: Results) -> RenderableType:
         return Group()
     low, high = (float(end(end(curve) for curve in curves.values())) for end in (min, max))
     ends = -np.log(-low), -np.log(-high)
-    width = max(map(len, names))
-    lines = [Text(f"{name:{width}}  {sparkline(-np.log(-curve), *ends)}") for name, curve in curves.items()]
+    longest = max(map(cell_len, names))
+    width = max(1, min(_WIDTH, columns - longest - 2))
+    lines = [
+        Text(f"{set_cell_size(name, longest)}  {sparkline(-np.log(-curve), *ends, width)}")
+        for name, curve in curves.items()
+    ]
     heading = f"Learning: accumulated reward by episode, from {low:,.0f} to {high:,.0f} (logarithmic)."
-    return Group(Text(heading), *lines, *_learned_policy(results, ranked))
+    return Group(Text(heading), *lines, *_learned_policy(results, ranked, min(_WIDTH, columns)))
 
 
-def _learned_policy(results: Results, ranked: list[str]) -> list[Text]:
+def _learned_policy(results: Results, ranked: list[str], width: int) -> list[Text]:
     """What a planner does is no news, and to make one again may take the compiler."""
     try:
         agents = ((name, agent_class(results.entrants[name].agent)) for name in ranked)
         best = next(name for name, agent in agents if not issubclass(agent, DoesNotLearn))
-        return blocks(results.trained(best))
+        return blocks(results.trained(best), width)
     except (StopIteration, InvalidValueError):  # there is none, or it cannot be told
         return []
 
 
-def blocks(agent: Trained) -> list[Text]:
+def blocks(agent: Trained, width: int = _WIDTH) -> list[Text]:
     """The policy map in coloured blocks: position to the right, velocity upward.
 
     Raises:
         arena.results.trained.UnknownPolicyError: when it drives by chance.
     """
     actions = policy(agent, map_of(agent))
-    across, upward = (np.arange(n) * size // n for n, size in zip((_WIDTH, 2 * _HEIGHT), actions.shape))
+    across, upward = (np.arange(n) * size // n for n, size in zip((width, 2 * _HEIGHT), actions.shape))
     shown = actions[np.ix_(across, upward[::-1])].T
     lines = [Text(f"Policy of {agent.entrant}, position to the right, velocity upward: ")]
     for name, color in zip(ACTION_NAMES, ACTIONS):

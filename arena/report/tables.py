@@ -1,15 +1,16 @@
 """What ``arena run`` and ``arena show`` print."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from rich import box
+from rich.cells import cell_len
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from arena.analysis.scores import SCORES, decimals
 from arena.analysis.standings import Leaderboard, leaderboard
+from arena.report.fitted import FittedTable
 from arena.reproduction.published_values import MINIMUM_ACCURACY
 from arena.reproduction.tables import Comparison, compare
 from arena.results.results import Results
@@ -62,10 +63,9 @@ def _heading(results: Results, confidence: float) -> str:
 
 def _leaderboard(board: Leaderboard) -> Table:
     """One line an entrant; the score that decides comes first, with its interval."""
-    table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1), pad_edge=False)
+    table = FittedTable("entrant", _HEADERS[board.by], "place", padding=(0, 0, 0, 1), pad_edge=False)
     table.add_column("place", no_wrap=True)
-    widest = max(len(standing.entrant) for standing in board.standings)
-    table.add_column("entrant", overflow="fold", min_width=min(widest, _NAME))
+    add_names(table, [standing.entrant for standing in board.standings])
     for name in board.shown:
         table.add_column(_HEADERS[name], justify="right", no_wrap=True)
     for standing in board.standings:
@@ -159,8 +159,13 @@ def _failures(results: Results) -> Iterator[Text]:
             yield Text(f"{record.entrant} replicate {record.replicate} failed: {reason}")
 
 
+def add_names(table: Table, names: Iterable[str]) -> None:
+    """Add the column of the entrants, where long names may be folded."""
+    table.add_column("entrant", overflow="fold", min_width=min(max(map(cell_len, names), default=0), _NAME))
+
+
 def _table(title: str, *columns: str) -> Table:
-    table = Table(title=title or None, box=box.SIMPLE, title_justify="left", title_style="bold")
+    table = FittedTable(columns[0], title=title or None, title_justify="left", title_style="bold")
     for number, column in enumerate(columns):
         table.add_column(column, justify="right" if number else "left", no_wrap=number > 0)
     return table

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from rich import box
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from arena.report.fitted import FittedTable
 from arena.reproduction.published_values import PAPER, REASONABLE, Summary
 from arena.reproduction.walk_study import WalkStudy
 
@@ -22,8 +22,8 @@ def render(study: WalkStudy, hill: str) -> RenderableType:
 
 
 def _table(first: str, *others: str) -> Table:
-    table = Table(box=box.SIMPLE, padding=(0, 0, 0, 2), pad_edge=False)
-    table.add_column(first, no_wrap=True)
+    table = FittedTable(first, padding=(0, 0, 0, 2), pad_edge=False)
+    table.add_column(first)
     for name in others:
         table.add_column(name, justify="right", no_wrap=True)
     return table

@@ -5,6 +5,7 @@ workers, and compiled code without Python's knowledge. So results have a stream 
 take for stdout, which is ``sys.stdout`` and the descriptor 1 that workers inherit, is stderr.
 """
 
+import codecs
 import errno
 import io
 import os
@@ -18,16 +19,20 @@ if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
 _results: ContextVar[TextIO] = ContextVar("_results")
+_REPLACED = "arena.replaced"
 
 
 class _Patient(io.FileIO):
-    """A file that drops what its reader, such as ``head``, no longer wants."""
+    """A file that drops what its reader, such as ``head``, no longer wants,
+    and on stderr whatever cannot be written.
+    """
 
     def write(self, data: "ReadableBuffer") -> int:
         try:
             return super().write(data)
         except OSError as error:  # EINVAL is how Windows calls a broken pipe
-            if not isinstance(error, ConnectionError) and error.errno != errno.EINVAL:
+            seen_enough = isinstance(error, ConnectionError) or error.errno == errno.EINVAL
+            if not seen_enough and self.fileno() != 2:
                 raise
             return memoryview(data).nbytes
 
@@ -58,6 +63,17 @@ def _patient(stream: TextIO, number: int) -> TextIO:
     return io.TextIOWrapper(writer, stream.encoding, stream.errors, line_buffering=lines)
 
 
+def _replaced(error: UnicodeError) -> tuple[str | bytes, int]:
+    """The bytes of a file's name as they were, a question mark for any other character."""
+    try:
+        return codecs.lookup_error("surrogateescape")(error)
+    except UnicodeError:
+        return codecs.lookup_error("replace")(error)
+
+
+codecs.register_error(_REPLACED, _replaced)
+
+
 @contextmanager
 def usable() -> Iterator[None]:
     """Meanwhile no stream is None or closed; and from now on stdout takes any character."""
@@ -69,7 +85,7 @@ def usable() -> Iterator[None]:
                 stack.callback(setattr, sys, name, stream)
                 setattr(sys, name, nothing)
         if isinstance(sys.stdout, io.TextIOWrapper):
-            sys.stdout.reconfigure(errors="replace")
+            sys.stdout.reconfigure(errors=_REPLACED)
         yield
 
 

@@ -167,7 +167,8 @@ def test_a_reader_that_has_seen_enough_is_no_failure(
 @pytest.mark.skipif(os.name == "nt", reason="needs a shell that can close a stream")
 @pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
 def test_a_tournament_runs_without_streams(folder: Path, closed: str) -> None:
-    command = ["sh", "-c", f'exec "$0" -m arena "$@" {closed}', sys.executable, *RUN]
+    run = ["run", "loud.toml", "--jobs", "2", "--strict", "--out", "again.sqlite"]
+    command = ["sh", "-c", f'exec "$0" -m arena "$@" {closed}', sys.executable, *run]
     done = subprocess.run(command, cwd=folder, capture_output=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
     assert (folder / "again.html").exists()
@@ -190,13 +191,14 @@ def test_no_stream_needs_to_be_there(
 
 @pytest.mark.system
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
-@pytest.mark.parametrize("command", ["agents --json", "--help"])
-def test_results_that_cannot_be_written_are_told(tmp_path: Path, command: str) -> None:
+@pytest.mark.parametrize("command", ["digest FILE", "agents --json", "--help"])
+def test_results_that_cannot_be_written_are_told(tmp_path: Path, file: str, command: str) -> None:
+    arguments = command.replace("FILE", file).split()
     with Path("/dev/full").open("w") as full:
-        done = arena(*command.split(), cwd=tmp_path, stdout=full)
+        done = arena(*arguments, cwd=tmp_path, stdout=full)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
         assert "No space left on device" in done.stderr
-        assert arena(*command.split(), cwd=tmp_path, stdout=full, stderr=full).returncode == 2
+        assert arena(*arguments, cwd=tmp_path, stdout=full, stderr=full).returncode == 2
 
 
 @pytest.mark.parametrize("columns", ["0", "1", "30", "40", "50"])

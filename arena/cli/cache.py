@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from arena.cli.console import answer
 from arena.cli.options import AsJson
 
 
@@ -27,12 +28,11 @@ def cache(
     counts = {"kernels": len(kernels), "bytes": sum(kernels.values())}
     old_counts = {word: len(old), f"{word}_bytes": sum(old.values())}
     if as_json:
-        print(json.dumps({"folder": str(folder), "days": days, **counts, **old_counts}))
+        answer(json.dumps({"folder": str(folder), "days": days, **counts, **old_counts}))
         return
-    print(f"{folder}: {_words(*counts.values())}")
-    print(
-        f"{'removed, as' if prune else 'of these'} not used for {days} days: {_words(*old_counts.values())}"
-    )
+    answer(f"{folder}: {_words(*counts.values())}")
+    rest = "removed, as" if prune else "of these"
+    answer(f"{rest} not used for {days} days: {_words(*old_counts.values())}")
 
 
 def _words(kernels: int, size: int) -> str:

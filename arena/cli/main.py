@@ -12,6 +12,7 @@ from arena.cli.agents import add_commands
 from arena.cli.cache import add_commands as add_cache_command
 from arena.cli.console import BAD_INPUT, BUG, INTERRUPTED, InterruptedRunError, say, say_bug
 from arena.cli.curves import add_commands as add_curves_command
+from arena.cli.files import add_commands as add_file_commands
 from arena.cli.paper import add_commands as add_paper_command
 from arena.cli.plot import add_commands as add_plot_command
 from arena.cli.race import add_commands as add_race_command
@@ -35,6 +36,7 @@ add_run_commands(app)
 add_result_commands(app)
 add_plot_command(app)
 add_report_command(app)
+add_file_commands(app)
 add_race_command(app)
 add_curves_command(app)
 add_paper_command(app)

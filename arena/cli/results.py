@@ -65,7 +65,9 @@ def print_results(
 
 def compare(
     file: File,
-    a: Annotated[str | None, typer.Argument(help="An entrant.", metavar="A")] = None,
+    a: Annotated[
+        str | None, typer.Argument(help="An entrant; NAME@old is its former version.", metavar="A")
+    ] = None,
     b: Annotated[str | None, typer.Argument(help="Another one.", metavar="B")] = None,
     baseline: Annotated[
         Path | None,
@@ -84,7 +86,9 @@ def compare(
 
     if (baseline is None) == (a is None or b is None) or (baseline is not None and a is not None):
         raise InvalidValueError("compare must be given two entrants, or --baseline and none")
-    with load(file) as results, _patience(by):
+    with load(file) as results:
+        past = [name for name in (a, b) if name and "@" in name and name not in results.entrants]
+    with load(file, past) as results, _patience(by):
         if baseline is None:
             _print_comparison(results, str(a), str(b), by.value, confidence, as_json=as_json)
             return

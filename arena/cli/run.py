@@ -17,17 +17,21 @@ from arena.cli.results import print_results
 from envs.foundation.errors import InvalidValueError
 
 if TYPE_CHECKING:
+    from arena.results.growth import Growth
     from arena.results.results import Results
     from arena.tournament.tournament import Tournament
 
 _BUILT_IN_TAKE = {"replicates", "seed", "reading"}
 
 
-def _replicates(text: str) -> int | str:
+def _replicates(text: str) -> int | str | range:
     from arena.statistics.sequential import ADAPTIVE
 
+    part = re.fullmatch(r"(\d{1,9}):(\d{1,9})", text)
+    if part and int(part[1]) < int(part[2]):
+        return range(int(part[1]), int(part[2]))
     if text != ADAPTIVE and not re.fullmatch(r"-?\d{1,9}", text):
-        raise typer.BadParameter(f"it must be a number or {ADAPTIVE}, got {text!r}")
+        raise typer.BadParameter(f"it must be a number, a part such as 50:100, or {ADAPTIVE}, got {text!r}")
     return text if text == ADAPTIVE else int(text)
 
 
@@ -47,7 +51,7 @@ def run(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Results file; by default runs/NAME.sqlite. One of the same tournament is continued.",
+            help="Results file; by default runs/NAME.sqlite. One that is there keeps what is still needed.",
             metavar="FILE",
         ),
     ] = None,
@@ -56,8 +60,9 @@ def run(
         Any,
         typer.Option(
             parser=_replicates,
-            help="Repetitions of each entrant; adaptive: until the first place is decided.",
-            metavar="R|adaptive",
+            help="Repetitions of each entrant, or only those from A on before B; adaptive: until the first "
+            "place is decided.",
+            metavar="R|A:B|adaptive",
         ),
     ] = None,
     max_replicates: Annotated[
@@ -76,17 +81,26 @@ def run(
     strict: Annotated[bool, typer.Option(help="Exit with 1 if an entrant failed.")] = False,
     report: Annotated[bool, typer.Option(help="Write a page of the results beside them.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    dry_run: Annotated[bool, typer.Option(help="Only say what would be kept and what run.")] = False,
 ) -> None:
     """Run a tournament, keep its results and print its tables."""
     if jobs == 0:
         raise InvalidValueError("--jobs must not be 0: give a number of workers, or -1 for one a core")
     load_plugins(plugin)
+    only = replicates if isinstance(replicates, range) else None
+    replicates = only.stop if only else replicates
     given = {"replicates": replicates, "seed": seed, "reading": reading}
     given |= {"max_replicates": max_replicates, "confidence": confidence}
     chosen = _tournament(tournament, {key: value for key, value in given.items() if value is not None})
     out = out or _default_file(chosen.name)
+    if dry_run or out.exists():
+        plan = _plan(chosen, out, only)
+        if dry_run:
+            answer(plan.sentence)
+            return
+        say(plan.sentence)
     try:
-        results = _run(chosen, out, jobs, driver.value)
+        results = _run(chosen, out, jobs, driver.value, only)
     except KeyboardInterrupt:
         raise InterruptedRunError(out) from None
     with results:
@@ -146,11 +160,17 @@ def _tournament(name: str, changes: dict[str, Any]) -> "Tournament":
     return load_tournament(name, **changes)
 
 
-def _run(tournament: "Tournament", out: Path, jobs: int, driver: str) -> "Results":
+def _plan(tournament: "Tournament", out: Path, only: range | None) -> "Growth":
+    from arena.execution.runner import preview
+
+    return preview(tournament, out, only)
+
+
+def _run(tournament: "Tournament", out: Path, jobs: int, driver: str, only: range | None) -> "Results":
     from arena.execution.runner import run as run_tournament
 
     with progress_bar(tournament.name) as progress:
-        return run_tournament(tournament, out, jobs, driver, progress=progress)
+        return run_tournament(tournament, out, jobs, driver, progress=progress, replicates=only)
 
 
 def _write_page(results: "Results", page: Path) -> None:

@@ -1,5 +1,7 @@
 """Which runs of a tournament come before which look; all at once if its replicates are a number."""
 
+from collections.abc import Collection
+
 from arena.analysis.scores import scores_of
 from arena.results.results import Results
 from arena.results.store import Store
@@ -10,10 +12,15 @@ from arena.tournament.tournament import Tournament
 Stage = tuple[tuple[Run, ...], Look | None]
 
 
-def stages_of(tournament: Tournament) -> list[Stage]:
-    """The runs until each look, and the look; None where nothing is looked at."""
+def stages_of(tournament: Tournament, only: range) -> list[Stage]:
+    """The runs until each look, and the look; None where nothing is looked at.
+
+    Args:
+        tournament: what is raced.
+        only: the replicates that are run, where their number is fixed.
+    """
     if tournament.replicates != ADAPTIVE:
-        return [(tournament.runs, None)]
+        return [(tuple(run for run in tournament.runs if run.replicate in only), None)]
     entrants = len(tournament.entrants)
     all_looks = looks(entrants, tournament.max_replicates, tournament.confidence)
     starts = [0, *(look.replicates for look in all_looks)]
@@ -24,7 +31,7 @@ def stages_of(tournament: Tournament) -> list[Stage]:
 
 
 def pending_runs(
-    tournament: Tournament, stages: list[Stage], store: Store | None, done: set[tuple[str, int]]
+    tournament: Tournament, stages: list[Stage], store: Store | None, done: Collection[tuple[str, int]]
 ) -> list[Run]:
     """What may have to be run: nothing if what is finished decides.
 

@@ -1,33 +1,36 @@
-"""Whether a results file is of the same tournament, and what it learns when it is continued."""
+"""Whether a results file may be continued as a tournament, and what both know of it."""
 
 import json
 from typing import Any
 
-# Changing these changes no result, so a tournament may be continued with others.
+from arena.results.versions import CONDITIONS
+
+# Changing these changes no result, so digests leave them out.
 MAY_CHANGE = {"time_limit", "memory_limit"}
 
 
 def difference(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
-    """The first thing in which two tournaments differ, in words; empty if they are the same.
+    """The first of the conditions in which two tournaments differ, in words; empty if none does.
 
-    Of an entrant whose agent could not be had then, or cannot be had now, only the name and the agent's
-    name count: its parameters could not be completed.
+    The name is one of them, though no bit depends on it: another one is hardly meant for the same file.
     """
-    for key in {**ours, **theirs}:
-        if key in MAY_CHANGE or theirs.get(key) == ours.get(key):
-            continue
-        if key == "entrants" and _same_entrants(theirs[key], ours[key]):
+    for key in ("name", *CONDITIONS):
+        if theirs.get(key) == ours.get(key):
             continue
         if isinstance(ours.get(key), (str, int)):
             return f"its {key} is {theirs.get(key)!r}, not {ours[key]!r}"
-        return f"its {key} differ"
+        return f"its {key} differs"
     return ""
 
 
 def continued(theirs: dict[str, Any], ours: dict[str, Any]) -> dict[str, Any]:
-    """The tournament ``theirs``, of a file, with all that ``ours``, the same, knows of its entrants."""
-    pairs = zip(theirs["entrants"], ours["entrants"], strict=True)
-    return {**theirs, "entrants": [before if _unavailable(now) else now for before, now in pairs]}
+    """The tournament ``ours``, with all that ``theirs``, of a file, knows of its entrants.
+
+    Of an entrant whose agent cannot be had now only the name and the agent's name are known, for its
+    parameters cannot be completed.
+    """
+    known = {entrant["name"]: entrant for entrant in theirs["entrants"]}
+    return {**ours, "entrants": [_known(known.get(now["name"]), now) for now in ours["entrants"]]}
 
 
 def as_read(config: dict[str, Any]) -> dict[str, Any]:
@@ -36,14 +39,6 @@ def as_read(config: dict[str, Any]) -> dict[str, Any]:
     return read
 
 
-def _same_entrants(theirs: list[dict[str, Any]], ours: list[dict[str, Any]]) -> bool:
-    return len(theirs) == len(ours) and all(
-        all(before[key] == now[key] for key in ("name", "agent"))
-        if _unavailable(before) or _unavailable(now)
-        else before == now
-        for before, now in zip(theirs, ours, strict=True)
-    )
-
-
-def _unavailable(entrant: dict[str, Any]) -> bool:
-    return "unavailable" in entrant
+def _known(before: dict[str, Any] | None, now: dict[str, Any]) -> dict[str, Any]:
+    same = before is not None and "unavailable" in now and before["agent"] == now["agent"]
+    return before if before is not None and same else now

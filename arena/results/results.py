@@ -1,7 +1,7 @@
 """Results of a tournament: scores as a table, arrays on demand."""
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,9 +11,9 @@ import numpy as np
 from arena.common.html import represent
 from arena.common.npz import Arrays
 from arena.results.records import EntrantRecord, RunRecord, run_record
+from arena.results.schema import replicates_of
 from arena.results.store import ResultsError, Store
 from arena.results.trained import Trained, UnknownPolicyError, restore
-from arena.statistics.sequential import ADAPTIVE
 from arena.tournament.conditions import Conditions, Evaluation, Training
 from envs.foundation.checks import choice, integer
 from envs.foundation.errors import InvalidValueError
@@ -86,9 +86,7 @@ class Results:
     @property
     def max_replicates(self) -> int:
         """How many there may be of each entrant."""
-        config = self._store.config
-        replicates: int = config["max_replicates" if config["replicates"] == ADAPTIVE else "replicates"]
-        return replicates
+        return replicates_of(self._store.config)
 
     @property
     def runs(self) -> list[dict[str, Any]]:
@@ -117,6 +115,28 @@ class Results:
         columns = ["entrant", "agent", *names, "replicate", *_SCORES]
         frame = pd.DataFrame(rows, columns=columns)
         return frame.astype(dict.fromkeys(("accuracy", "mean_length", "steps", "seconds"), float))
+
+    def episodes(self) -> "pd.DataFrame":
+        """A row an episode of the finished runs: entrant, replicate, phase, episode, steps and reached.
+
+        ``phase`` is ``"training"`` or ``"test"``. Whether a training episode of as many steps as the limit
+        reached the goal with the last of them is not kept: it is told as false.
+        """
+        import pandas as pd
+
+        parts, limit = [], self.conditions.training.max_steps
+        for record in self.records:
+            if record.finished:
+                arrays = self.arrays(*record.key)
+                for phase, steps, reached in (
+                    ("training", arrays["lengths"], arrays["lengths"] < limit),
+                    ("test", arrays["test_lengths"], arrays["test_reached"]),
+                ):
+                    of = {"entrant": record.entrant, "replicate": record.replicate, "phase": phase}
+                    numbers = {"episode": np.arange(len(steps)), "steps": steps, "reached": reached}
+                    parts.append(pd.DataFrame(of | numbers))
+        columns = ["entrant", "replicate", "phase", "episode", "steps", "reached"]
+        return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
 
     def arrays(self, entrant: str, replicate: int = 0) -> Arrays:
         """The arrays of a run, by name.
@@ -194,13 +214,19 @@ class Results:
         return f"<Results of {self._store.config['name']!r}: {len(self.records)} of {total} runs>"
 
 
-def load(path: str | Path) -> Results:
+def load(path: str | Path, past: Iterable[str] = ()) -> Results:
     """The results in the file ``path``, only to be read.
 
+    Args:
+        path: of the file.
+        past: former versions of entrants that are to be entrants, too: ``mine@old`` is the last one of
+            ``mine``, whose code or parameters have been changed since.
+
     Raises:
-        arena.results.ResultsError: a ValueError; when there is no such file or it is something else.
+        arena.results.ResultsError: a ValueError; when there is no such file or it is something else, or it
+            has no such version.
     """
-    return Results(Store.read(Path(path)))
+    return Results(Store.read(Path(path), past))
 
 
 def _cell(value: Any) -> Any:

@@ -37,6 +37,12 @@ def row_problem(row: dict[str, Any], entrants: Iterable[str]) -> str:
     return "" if row["entrant"] in entrants else f"there is a run of {row['entrant']!r}, who is no entrant"
 
 
+def replicates_of(config: dict[str, Any]) -> int:
+    """How many replicates there may be of each entrant of a tournament."""
+    count: int = config["max_replicates" if config["replicates"] == ADAPTIVE else "replicates"]
+    return count
+
+
 def is_valid_config(config: Any) -> bool:
     """Whether a tournament that was read has what the rest of the program looks for."""
     kinds: dict[str, Any] = {"name": str, "reading": str, "seed": int, "replicates": (int, str)}

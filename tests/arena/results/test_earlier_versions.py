@@ -1,6 +1,8 @@
 """Files that earlier versions wrote are read, shown and continued to the bits that those would have left."""
 
 import shutil
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -8,10 +10,11 @@ import pytest
 from agents.registry import BUILT_IN
 from arena import Evaluation, PolicyAgent, Tournament, Training, load, load_plugin, run
 from arena.cli import main
+from arena.execution.runner import preview
 from arena.results import digest
+from arena.results.editing import prune
 from arena.results.equivalence import equivalent_code
 from arena.results.provenance import source_digests
-from arena.results.store import ResultsError
 from arena.tournament import Entrant
 
 DATA = Path(__file__).parent / "data"
@@ -68,11 +71,22 @@ def test_a_file_of_0_1_0_is_continued_to_the_same_bits(unchanged: Path, tmp_path
         assert digest(results) == WHOLE
 
 
-def test_runs_of_0_1_0_of_an_agent_that_draws_otherwise_now_are_not_mixed_with_others(
-    file: Path, tmp_path: Path
+def test_runs_of_0_1_0_of_an_agent_that_draws_otherwise_now_are_put_aside(file: Path, tmp_path: Path) -> None:
+    plan = preview(before(file, tmp_path), file)
+    anew = {"q-learning", "tutorial", "double-q-learning", "dyna-q", "expected-sarsa", "prioritized-sweeping"}
+    assert plan.reasons == dict.fromkeys(anew | {"r-max"}, "whose code changed")
+    assert (len(plan.kept), len(plan.missing), plan.aside) == (12, 26, 7)
+
+
+def test_a_file_of_0_1_0_is_taken_over_when_it_is_written_and_no_copy_stays(
+    unchanged: Path, tmp_path: Path
 ) -> None:
-    with pytest.raises(ResultsError, match=r"holds runs of other code of '[\w-]+'; name another file"):
-        run(before(file, tmp_path), file, n_jobs=1)
+    with closing(sqlite3.connect(unchanged)) as connection:
+        assert connection.execute("PRAGMA user_version").fetchone() == (1,)
+    prune(unchanged)
+    with closing(sqlite3.connect(unchanged)) as connection:
+        assert connection.execute("PRAGMA user_version").fetchone() == (2,)
+    assert [path.name for path in tmp_path.iterdir()] == [unchanged.name]
 
 
 def test_code_of_built_in_agents_is_known_to_leave_the_bits_of_before() -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from agents import MomentumAgent, QLearning, Sarsa
 from agents.baselines import XiaoAgent
 from arena import Entrant, Evaluation, Policy, PolicyAgent, Results, Tournament, Training, load_plugin, run
+from arena.execution.runner import preview
 from arena.testing import check_agent
 from envs import mountain_car_v0
 
@@ -84,14 +85,14 @@ def test_a_model_races_beside_others_on_any_number_of_workers() -> None:
         assert len(set(frame["fingerprint"].dropna())) == 1
 
 
-def test_a_file_is_continued_with_the_same_policy_only(tmp_path: Path) -> None:
+def test_runs_of_another_policy_are_not_those_of_this_one(tmp_path: Path) -> None:
     out, reports = tmp_path / "race.sqlite", list[tuple[int, int]]()
     run(tournament(Model().predict), out, n_jobs=1, driver="pettingzoo").close()
     same = tournament(Model(0.0).predict)  # another object
     run(same, out, n_jobs=1, driver="pettingzoo", progress=lambda *report: reports.append(report)).close()
     assert reports == [(6, 6)]
-    with pytest.raises(ValueError, match="its entrants differ"):
-        run(tournament(Model(0.01).predict), out, n_jobs=1)
+    plan = preview(tournament(Model(0.01).predict), out)
+    assert plan.sentence == "keeps 4 runs, puts 2 aside, runs 2: 2 of 'model 0', whose parameters changed"
 
 
 def test_a_fingerprint_that_is_given_lets_no_other_policy_race() -> None:

@@ -15,6 +15,7 @@ from plugin_files import EDITS, NOTEBOOK, PLUGIN, RACE, RUN, RUN_IT, bits, from_
 from agents import agent_class
 from arena import Results, load, load_plugin, run
 from arena.cli import main
+from arena.results import digest
 from arena.tournament import load_tournament
 
 pytestmark = pytest.mark.usefixtures("folder")
@@ -52,13 +53,20 @@ def test_a_file_that_is_broken_by_an_edit_does_not_run_as_it_was_before() -> Non
         assert {one["status"] for one in results.runs} == {"failed"}
 
 
-def test_results_of_an_edited_plugin_are_not_mixed_with_those_of_before() -> None:
-    arguments = [*RUN, "--plugin", "speedy.py", "--jobs", "1", "--out", "r.sqlite"]
-    assert main(arguments) == 0
-    before = Path("r.sqlite").read_bytes()
+def test_results_of_an_edited_plugin_are_not_mixed_with_those_of_before(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    arguments = [*RUN, "--plugin", "speedy.py", "--jobs", "1", "--out"]
+    assert main([*arguments, "r.sqlite"]) == 0
+    with load("r.sqlite") as results:
+        before = digest(results)
+    capsys.readouterr()
     Path("speedy.py").write_text(PLUGIN.replace(*EDITS["a constant"]))
-    assert main(arguments) == 2
-    assert Path("r.sqlite").read_bytes() == before
+    assert main([*arguments, "r.sqlite"]) == 0
+    assert ", whose code changed" in capsys.readouterr().err
+    assert main([*arguments, "fresh.sqlite"]) == 0
+    with load("r.sqlite") as grown, load("fresh.sqlite") as fresh:
+        assert digest(grown) == digest(fresh) != before
 
 
 SHARE = "library_helper.share()"

@@ -192,5 +192,5 @@ def test_a_run_leaves_a_page_unless_it_is_told_not_to(
     without = capsys.readouterr()
     assert not Path("runs/t.html").exists()
     assert main(run) == 0
-    assert capsys.readouterr() == without
+    assert capsys.readouterr() == (without.out, "arena: keeps 1 run, runs 0\n")
     assert "Tournament t" in Path("runs/t.html").read_text()

@@ -4,6 +4,7 @@ A kernel is a file; its time of modification is when it was last used. Versions 
 """
 
 import os
+import random
 import re
 import shutil
 import tempfile
@@ -77,8 +78,9 @@ def kept_kernels(folder: Path) -> Iterator[Kept]:
         OSError: when it cannot be read.
     """
     with os.scandir(folder) if folder.exists() else nullcontext(()) as entries:
-        names = {entry.name for entry in entries if _OURS.fullmatch(entry.name)}
-    # A set has another order in each process: ``sweep``, which may not come to the end, comes to each.
+        names = [entry.name for entry in entries if _OURS.fullmatch(entry.name)]
+    # In another order each time: ``sweep``, which may not come to the end, comes to each.
+    random.Random().shuffle(names)  # noqa: S311
     for name in names:
         path = folder / name
         with suppress(FileNotFoundError):  # another process has removed it

@@ -12,7 +12,7 @@ import sqlite3
 import urllib.parse
 import weakref
 from collections.abc import Container, Iterable, Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -176,9 +176,13 @@ class Store:
     def _open(cls, path: Path, mode: str) -> "Store":
         if not path.is_file():
             raise ResultsError(f"there is no results file {path}")
-        uri = f"file:{urllib.parse.quote(str(path.absolute()))}?mode={mode}"
+        uri = f"file:{urllib.parse.quote(str(path.absolute()))}?mode="
         try:
-            return cls(_connect(uri), path)
+            if mode == "ro" and path.with_name(f"{path.name}-journal").exists():
+                # A process that was killed while it wrote: only one that may write can take that back.
+                with suppress(sqlite3.Error), closing(_connect(f"{uri}rw")) as connection:
+                    connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+            return cls(_connect(f"{uri}{mode}"), path)
         except sqlite3.Error as error:
             raise ResultsError(f"{path} is not a results file of the arena: {first_line(error)}") from error
 

@@ -84,5 +84,8 @@ def test_compiled_agents_allocate_nothing_and_leave_the_interpreters_bits(
 @pytest.mark.parametrize("kind", KINDS, ids=["uniform", "quantile", "kmeans"])
 def test_every_kind_of_cells_and_of_exploration(cls: type[Any], kind: dict[str, Any]) -> None:
     given = {name: value for name, value in kind.items() if name in parameters_of(cls)[0]}
-    assert_same_bits_from_both_drivers(cls, given)
+    limit = (
+        40 if cls is RMax and "binning" not in kind else 60
+    )  # some of its episodes reach the goal, not all
+    assert_same_bits_from_both_drivers(cls, given, limit)
     assert_allocates_nothing(cls, given)

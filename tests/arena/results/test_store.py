@@ -21,6 +21,7 @@ from hypothesis import strategies as st
 from agents import MomentumAgent, RandomAgent
 from arena import Entrant, Tournament, load, run
 from arena.common.npz import pack, unpack
+from arena.execution.runner import preview
 from arena.report.tables import render
 from arena.reproduction import compare
 from arena.results import ResultsError, digest
@@ -171,6 +172,26 @@ def test_a_run_is_kept_once_it_is_added(tmp_path: Path, small: Tournament) -> No
         assert other.frame().accuracy.tolist() == [50.0]
     assert store.finished() == {("q", 1)}
     store.close()
+
+
+KILLED = """
+import os, sqlite3, sys
+c = sqlite3.connect(sys.argv[1], isolation_level=None)
+c.execute("PRAGMA cache_size = 1")
+c.execute("BEGIN IMMEDIATE")
+c.execute("INSERT OR REPLACE INTO arrays VALUES ('q', 0, zeroblob(5000000))")
+os._exit(0)
+"""
+
+
+def test_what_a_killed_writer_had_begun_is_taken_back_by_any_reader(file: Path, small: Tournament) -> None:
+    with load(file) as results:
+        before = digest(results)
+    subprocess.run([sys.executable, "-c", KILLED, str(file)], check=True)
+    assert file.with_name(f"{file.name}-journal").exists()
+    assert preview(small, file).sentence == "keeps 4 runs, runs 0"
+    with load(file) as results:
+        assert digest(results) == before
 
 
 def read_all(path: Path) -> None:

@@ -155,8 +155,8 @@ def _checked_replicates(tournament: Tournament, replicates: range | None) -> ran
     if (
         tournament.replicates == ADAPTIVE
         or replicates.step != 1
-        or not set(replicates) <= {*every}
         or not replicates
+        or not (replicates[0] in every and replicates[-1] in every)
     ):
         raise InvalidValueError(
             f"replicates must be neighbours among the {len(every)} of a tournament that is not adaptive, "

@@ -51,9 +51,9 @@ def number_claim(section: str, statement: str, paper: float, sample: ArrayLike, 
     if not len(known):
         return untestable_claim(section, statement, paper, known, "none of our replicates has such a number")
     low, high = _central(known)
-    percentile = 100.0 * (np.mean(known < paper) + np.mean(known == paper) / 2.0)
     verdict = REPRODUCED if low <= paper <= high else NOT_REPRODUCED
-    return Claim(section, statement, paper, float(known.mean()), low, high, float(percentile), verdict, note)
+    ours, percentile = float(known.mean()), _percentile(paper, known)
+    return Claim(section, statement, paper, ours, low, high, percentile, verdict, note)
 
 
 def distance_claim(section: str, statement: str, paper: float, sample: ArrayLike, note: str) -> Claim:
@@ -62,9 +62,9 @@ def distance_claim(section: str, statement: str, paper: float, sample: ArrayLike
     if math.isnan(paper) or not len(known):
         return untestable_claim(section, statement, paper, known, "all our replicates have the same numbers")
     farthest = float(np.percentile(known, CENTRAL))
-    percentile = 100.0 * float(np.mean(known < paper) + np.mean(known == paper) / 2.0)
     verdict = REPRODUCED if paper <= farthest else NOT_REPRODUCED
-    return Claim(section, statement, paper, float(known.mean()), 0.0, farthest, percentile, verdict, note)
+    ours, percentile = float(known.mean()), _percentile(paper, known)
+    return Claim(section, statement, paper, ours, 0.0, farthest, percentile, verdict, note)
 
 
 def holds_claim(section: str, statement: str, sample: ArrayLike, note: str = "") -> Claim:
@@ -96,6 +96,11 @@ def _estimates(sample: ArrayLike) -> tuple[float, float, float]:
 def _known(sample: ArrayLike) -> Floats:
     values: Floats = np.asarray(sample, dtype=float)
     return values[~np.isnan(values)]
+
+
+def _percentile(paper: float, known: Floats) -> float:
+    """The share of ours below the paper's number, in percent; equal ones count half."""
+    return float(100.0 * (np.mean(known < paper) + np.mean(known == paper) / 2.0))
 
 
 def _central(known: Floats) -> tuple[float, float]:

@@ -40,5 +40,6 @@ def as_read(config: dict[str, Any]) -> dict[str, Any]:
 
 
 def _known(before: dict[str, Any] | None, now: dict[str, Any]) -> dict[str, Any]:
-    same = before is not None and "unavailable" in now and before["agent"] == now["agent"]
-    return before if before is not None and same else now
+    if before and "unavailable" in now and before["agent"] == now["agent"]:
+        return before
+    return now

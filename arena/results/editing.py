@@ -13,6 +13,7 @@ from arena.results.past import copy_aside, copy_past, forget
 from arena.results.schema import replicates_of
 from arena.results.store import ResultsError, Store
 from arena.results.versions import versions_of
+from arena.statistics.sequential import ADAPTIVE
 from arena.tournament.outcome import Status
 from envs.foundation.checks import choice
 from envs.foundation.errors import InvalidValueError
@@ -48,7 +49,7 @@ def drop(path: Path, names: Sequence[str]) -> None:
         with store.transaction():
             for table in ("runs", "arrays", "past_runs", "past_arrays", "versions"):
                 rows = [(name,) for name in names]
-                store.connection.executemany(f"DELETE FROM {table} WHERE entrant = ?", rows)  # noqa: S608
+                store.connection.executemany(f"DELETE FROM {table} WHERE entrant = ?", rows)  # noqa: S608 (names of ours)
             store.describe({**store.config, "entrants": entrants}, store.sources)
         store.connection.execute("VACUUM")
 
@@ -90,7 +91,7 @@ def _joined(stores: Sequence[Store]) -> tuple[dict[str, Any], dict[str, str]]:
     config, sources = dict(first.config), dict(first.sources)
     for other in stores[1:]:
         differs = difference(other.config, config)
-        if differs or (config["replicates"] == "adaptive") != (other.config["replicates"] == "adaptive"):
+        if differs or (config["replicates"] == ADAPTIVE) != (other.config["replicates"] == ADAPTIVE):
             raise ResultsError(
                 f"{other.path} holds another tournament than {first.path} ({differs or 'its replicates'})"
             )
@@ -100,7 +101,7 @@ def _joined(stores: Sequence[Store]) -> tuple[dict[str, Any], dict[str, str]]:
             code = other.sources.get(agent, "")
             if not are_equivalent(agent, code, sources.setdefault(agent, code)):
                 raise ResultsError(f"{other.path} holds runs of other code of {agent!r} than {first.path}")
-        key = "replicates" if config["replicates"] != "adaptive" else "max_replicates"
+        key = "replicates" if config["replicates"] != ADAPTIVE else "max_replicates"
         count = max(replicates_of(config), replicates_of(other.config))
         config = {**config, "entrants": [*config["entrants"], *more], key: count}
     return config, sources

@@ -44,12 +44,12 @@ def put_aside(
     for table in _TABLES:
         columns = _COLUMNS[table]
         moved += connection.execute(
-            f"INSERT OR REPLACE INTO past_{table} (version, {columns}) SELECT ?, {columns} FROM {table} "  # noqa: S608
+            f"INSERT OR REPLACE INTO past_{table} (version, {columns}) SELECT ?, {columns} FROM {table} "  # noqa: S608 (names of ours)
             f"WHERE entrant = ? AND replicate >= ? AND replicate IN {finished}",
             (version, name, first, name),
         ).rowcount
     for table in _TABLES:
-        connection.execute(f"DELETE FROM {table} WHERE entrant = ? AND replicate >= ?", (name, first))  # noqa: S608
+        connection.execute(f"DELETE FROM {table} WHERE entrant = ? AND replicate >= ?", (name, first))  # noqa: S608 (names of ours)
     if moved:
         _note(connection, version, name, description)
 
@@ -60,10 +60,10 @@ def take_back(connection: sqlite3.Connection, name: str, version: str, count: in
     for table in _TABLES:
         columns = _COLUMNS[table]
         connection.execute(
-            f"INSERT OR IGNORE INTO {table} ({columns}) SELECT {columns} FROM past_{table} WHERE {chosen}",  # noqa: S608
+            f"INSERT OR IGNORE INTO {table} ({columns}) SELECT {columns} FROM past_{table} WHERE {chosen}",  # noqa: S608 (names of ours)
             (version, name, count),
         )
-        connection.execute(f"DELETE FROM past_{table} WHERE {chosen}", (version, name, count))  # noqa: S608
+        connection.execute(f"DELETE FROM past_{table} WHERE {chosen}", (version, name, count))  # noqa: S608 (names of ours)
     connection.execute(
         "DELETE FROM versions WHERE version = ? AND version NOT IN (SELECT version FROM past_runs)",
         (version,),
@@ -98,11 +98,11 @@ def copy_aside(
 ) -> None:
     """Make past runs, within a transaction, of an entrant's finished runs in another file."""
     name = entrant["name"]
-    query = f"SELECT {_COLUMNS['runs']} FROM runs WHERE entrant = ? AND status = 'finished'"  # noqa: S608
+    query = f"SELECT {_COLUMNS['runs']} FROM runs WHERE entrant = ? AND status = 'finished'"  # noqa: S608 (names of ours)
     rows = other.execute(query, (name,)).fetchall()
     _insert(connection, "past_runs", ((version, *row) for row in rows))
     done = {row[1] for row in rows}
-    arrays = other.execute(f"SELECT {_COLUMNS['arrays']} FROM arrays WHERE entrant = ?", (name,))  # noqa: S608
+    arrays = other.execute(f"SELECT {_COLUMNS['arrays']} FROM arrays WHERE entrant = ?", (name,))  # noqa: S608 (names of ours)
     _insert(connection, "past_arrays", ((version, *row) for row in arrays if row[1] in done))
     if rows:
         _note(connection, version, name, {**entrant, "code": sources.get(entrant["agent"], "")})
@@ -114,7 +114,7 @@ def copy_past(connection: sqlite3.Connection, other: sqlite3.Connection) -> None
         return
     for table in _TABLES:
         columns = f"version, {_COLUMNS[table]}"
-        _insert(connection, f"past_{table}", other.execute(f"SELECT {columns} FROM past_{table}"))  # noqa: S608
+        _insert(connection, f"past_{table}", other.execute(f"SELECT {columns} FROM past_{table}"))  # noqa: S608 (names of ours)
     for version, name, description in other.execute(
         "SELECT version, entrant, description FROM versions ORDER BY number"
     ):
@@ -123,7 +123,7 @@ def copy_past(connection: sqlite3.Connection, other: sqlite3.Connection) -> None
 
 def _insert(connection: sqlite3.Connection, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
     marks = {"past_runs": 10, "past_arrays": 4}[table]
-    connection.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({', '.join('?' * marks)})", rows)  # noqa: S608
+    connection.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({', '.join('?' * marks)})", rows)  # noqa: S608 (names of ours)
 
 
 def _note(connection: sqlite3.Connection, version: str, name: str, description: Any) -> None:
@@ -136,5 +136,5 @@ def forget(connection: sqlite3.Connection) -> int:
     """Remove all past runs; how many there were."""
     (count,) = connection.execute("SELECT count(*) FROM past_runs").fetchone()
     for table in ("past_runs", "past_arrays", "versions"):
-        connection.execute(f"DELETE FROM {table}")  # noqa: S608
+        connection.execute(f"DELETE FROM {table}")  # noqa: S608 (names of ours)
     return int(count)

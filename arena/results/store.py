@@ -330,10 +330,10 @@ class Store:
             if self._value("config") != self._stored:
                 raise ResultsError(f"{self.path} was changed by another process; open it again")
             columns = ", ".join(COLUMNS)
-            cursor = self.connection.execute(f"SELECT {columns} FROM runs")  # noqa: S608
+            cursor = self.connection.execute(f"SELECT {columns} FROM runs")  # noqa: S608 (names of ours)
             rows = [dict(zip(COLUMNS, row, strict=True)) for row in cursor]
             for label, version in self._past.items():
-                query = f"SELECT {columns} FROM past_runs WHERE version = ?"  # noqa: S608
+                query = f"SELECT {columns} FROM past_runs WHERE version = ?"  # noqa: S608 (names of ours)
                 cursor = self.connection.execute(query, (version,))
                 rows += [{**dict(zip(COLUMNS, row, strict=True)), "entrant": label} for row in cursor]
             orphans = (
@@ -362,7 +362,7 @@ class Store:
 
     def _packed(self, entrant: str, replicate: int) -> bytes | None:
         table, column = ("past_arrays", "version") if entrant in self._past else ("arrays", "entrant")
-        query = f"SELECT npz FROM {table} WHERE {column} = ? AND replicate = ?"  # noqa: S608
+        query = f"SELECT npz FROM {table} WHERE {column} = ? AND replicate = ?"  # noqa: S608 (names of ours)
         with self._reading():
             row = self.connection.execute(query, (self._past.get(entrant, entrant), replicate)).fetchone()
         return row[0] if row else None
